@@ -1,0 +1,47 @@
+"""The command line: declares the subcommands, turns what is wrong with the input into one line and status 2."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from collections.abc import Sequence
+
+from restitution import __version__
+from restitution.commands import data, impacts, laws, report
+from restitution.errors import InputError
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser of the whole command line."""
+    parser = argparse.ArgumentParser(
+        prog="restitution",
+        description="Reference toolkit for wet rebound: closure laws, measured data, impacts, comparison reports.",
+    )
+    parser.add_argument("--version", action="version", version=f"restitution {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for module in (data, laws, impacts, report):
+        module.add_parser(commands)
+    return parser
+
+
+def _one_line_warning(message, category, filename, lineno, line=None) -> str:  # noqa: ANN001 (signature of warnings)
+    return f"warning: {message}\n"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status: 0, or 2 for input that cannot be used."""
+    args = build_parser().parse_args(argv)
+    warnings.formatwarning = _one_line_warning
+    try:
+        return args.run(args) or 0
+    except InputError as error:
+        for defect in error.defects:
+            print(f"error: {defect}", file=sys.stderr)  # noqa: T201
+        return 2
+    except BrokenPipeError:
+        sys.stderr.close()  # the reader left (`| head`): no message about flushing
+        return 0
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)  # noqa: T201
+        return 130

@@ -1,0 +1,101 @@
+"""The conditions of an experiment or a run: fluid, sphere, wall, gravity, in SI.
+
+One record serves measured data (``data/datapackage.json``), users' TOML files and, later, simulation cases.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from restitution.errors import Defect, InputError
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+class _Record(BaseModel):
+    # A misspelt key must not pass as an unset one.
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Fluid(_Record):
+    """``density`` rho_f in kg/m3, dynamic ``viscosity`` mu in Pa s."""
+
+    density: Positive
+    viscosity: Positive
+
+
+class Sphere(_Record):
+    """``diameter`` d in m, ``density`` rho_p in kg/m3, dry restitution ``e_dry``, ``roughness`` in m."""
+
+    diameter: Positive
+    density: Positive
+    e_dry: Annotated[float, Field(gt=0, le=1)] = 0.97
+    roughness: NonNegative | None = None
+
+    @property
+    def radius(self) -> float:
+        return self.diameter / 2
+
+    @property
+    def mass(self) -> float:
+        return self.density * math.pi * self.diameter**3 / 6
+
+
+class Wall(_Record):
+    """What is known of the wall: ``roughness`` in m, ``material`` in words."""
+
+    roughness: NonNegative | None = None
+    material: str | None = None
+
+
+class QuotedImpact(_Record):
+    """The speed of the first impact, in m/s, for a record that begins after it."""
+
+    speed: Positive
+    speed_sigma: NonNegative = 0.0
+    speed_definition: Literal["far", "contact", "window"] = "far"
+
+
+class Conditions(_Record):
+    """Everything but the track itself. ``partner`` is the second sphere where there is no wall."""
+
+    fluid: Fluid
+    sphere: Sphere
+    wall: Wall | None = None
+    partner: Sphere | None = None
+    impact: QuotedImpact | None = None
+    gravity: Positive = 9.81
+    source: str | None = None
+
+
+def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
+    """Pydantic's findings as defects that name field and value."""
+    found = []
+    for e in error.errors():
+        missing = e["type"] == "missing"
+        value = None if missing or isinstance(e["input"], dict) else str(e["input"])
+        found.append(Defect(e["msg"], file, None, ".".join(str(p) for p in e["loc"]), value))
+    return found
+
+
+def read_conditions(path: str | Path) -> Conditions:
+    """Read a TOML file of conditions; raises :class:`InputError` naming every field that is wrong."""
+    path = Path(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
+    except UnicodeDecodeError as error:
+        raise InputError(Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", str(path))) from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(Defect(f"is not TOML: {error}", str(path))) from None
+    try:
+        return Conditions.model_validate(content)
+    except ValidationError as error:
+        raise InputError(*defects_of(error, str(path))) from None

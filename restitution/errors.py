@@ -1,0 +1,46 @@
+"""What can be wrong with a user's input, said so that it can be mended: file, row, field, value, rule.
+
+Everything that a user can get wrong raises :class:`InputError` (or a subclass); the command line turns it
+into one line a defect and exit status 2. Any other exception is a defect of this package.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Defect:
+    """One thing wrong at one place. ``row`` is the line number in the file, the header being row 1."""
+
+    rule: str
+    file: str | None = None
+    row: int | None = None
+    field: str | None = None
+    value: str | None = None
+
+    def __str__(self) -> str:
+        place = ":".join(str(p) for p in (self.file, self.row) if p is not None)
+        what = [f"{self.field}" if self.field is not None else "", f"= {self.value!r}" if self.value is not None else ""]
+        subject = " ".join(w for w in what if w)
+        return ": ".join(part for part in (place, subject, self.rule) if part)
+
+
+class InputError(ValueError):
+    """The input cannot be used. ``defects`` lists everything found wrong, in the order of the file."""
+
+    def __init__(self, *defects: Defect | str):
+        self.defects = tuple(d if isinstance(d, Defect) else Defect(d) for d in defects)
+        super().__init__("\n".join(str(d) for d in self.defects))
+
+
+class ConventionError(InputError):
+    """A Stokes number or an impact speed of one definition was given where another is needed."""
+
+
+class OutOfRangeError(InputError):
+    """A law was evaluated outside its validity range and the caller asked to be told by an error."""
+
+
+class OutOfRangeWarning(UserWarning):
+    """A law was evaluated outside its validity range."""

@@ -1,0 +1,220 @@
+"""What a law is: a small record with one formula, from which value, derivative and LaTeX follow.
+
+A law is a frozen dataclass. Its fields are its parameters, made by :func:`parameter` with default, bounds,
+unit and the source of the default; its class attributes say what it is: name, formula, convention, validity,
+reference, status and a check value from outside this package. Subclassing with a ``name`` registers it.
+
+The formula is one sympy expression in the law's variables and parameters. Laws that no closed expression
+gives (a series, a table of a numerical solution) override ``_value`` and ``_derivative`` instead and say so
+in ``formula_note``. Sympy is imported when a law is first evaluated, not when it is named.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache, cached_property
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from restitution.errors import Defect, InputError, OutOfRangeError, OutOfRangeWarning
+
+OutOfRange = Literal["warn", "raise", "clip", "ignore"]
+REGISTRY: dict[str, type[Law]] = {}
+
+
+class Status(StrEnum):
+    """How far a law's formula has been checked against its source."""
+
+    VERIFIED = "verified"
+    """Read in the source, or in public code that implements it and names it."""
+    DERIVED = "derived"
+    """Derived or computed from stated equations; the derivation is in the docstring or the reference."""
+    RECONSTRUCTED = "reconstructed"
+    """The source survives only in part; the formula is a reading of what is left."""
+    UNVERIFIED = "unverified"
+    """Widely quoted; the source itself was not opened."""
+
+
+@dataclass(frozen=True)
+class CheckValue:
+    """A value from outside this package: ``law(**inputs, **parameters)`` is ``value`` within ``tolerance``."""
+
+    inputs: dict[str, float]
+    value: float
+    tolerance: float
+    source: str
+    parameters: dict[str, float] = dataclasses.field(default_factory=dict)
+
+
+def parameter(default: float, bounds: tuple[float, float], unit: str, meaning: str, source: str) -> Any:
+    """A law's parameter: a dataclass field that carries its bounds, unit, meaning and source."""
+    metadata = {"bounds": bounds, "unit": unit, "meaning": meaning, "source": source}
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+@dataclass(frozen=True)
+class Law:
+    """Base of all laws. Call it with its variables, in order or by name; arrays broadcast."""
+
+    name: ClassVar[str]
+    family: ClassVar[str]
+    title: ClassVar[str]
+    symbol: ClassVar[str]
+    """LaTeX of what the law gives, the left-hand side."""
+    variables: ClassVar[tuple[str, ...]]
+    """Names of the arguments; the first is the one that ``derivative`` and ``validity`` are about."""
+    formula: ClassVar[str | None] = None
+    formula_note: ClassVar[str] = ""
+    validity: ClassVar[tuple[float, float]] = (0.0, np.inf)
+    validity_source: ClassVar[str] = ""
+    reference: ClassVar[str]
+    status: ClassVar[Status]
+    evidence: ClassVar[str] = ""
+    """What the status rests on."""
+    checks: ClassVar[tuple[CheckValue, ...]] = ()
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        if "name" in cls.__dict__:
+            REGISTRY[cls.name] = cls
+
+    def __post_init__(self) -> None:
+        for f in dataclasses.fields(self):
+            low, high = f.metadata["bounds"]
+            value = getattr(self, f.name)
+            if not low <= value <= high:  # also refuses NaN
+                raise InputError(
+                    Defect(f"parameter of {self.name} outside its bounds [{low:g}, {high:g}]", None, None, f.name, f"{value:g}")
+                )
+
+    @classmethod
+    def parameter_fields(cls) -> tuple[dataclasses.Field, ...]:
+        """The parameters as dataclass fields; ``metadata`` has bounds, unit, meaning, source."""
+        return dataclasses.fields(cls)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The values of the parameters."""
+        return dataclasses.asdict(self)
+
+    def replace(self, **parameters: float) -> Law:
+        """The same law with other parameters; raises :class:`InputError` for an unknown name."""
+        known = [f.name for f in dataclasses.fields(self)]
+        for name in parameters:
+            if name not in known:
+                raise InputError(Defect(f"not a parameter of {self.name}; it has: {', '.join(known) or 'none'}", field=name))
+        return dataclasses.replace(self, **parameters)
+
+    def __call__(self, *args: Any, out_of_range: OutOfRange = "warn", **kwargs: Any) -> Any:
+        """The law's value; shape is that of the broadcast arguments."""
+        return self._value(*self._arguments(args, kwargs, out_of_range))[()]
+
+    def derivative(self, *args: Any, out_of_range: OutOfRange = "warn", **kwargs: Any) -> Any:
+        """The exact derivative of the value with respect to the law's first variable."""
+        return self._derivative(*self._arguments(args, kwargs, out_of_range))[()]
+
+    def expression(self) -> Any:
+        """The formula as a sympy expression in symbols for variables and parameters."""
+        if self.formula is None:
+            raise InputError(f"{self.name} has no closed formula: {self.formula_note}")
+        return _parse(self.formula, self._symbols)
+
+    def latex(self) -> str:
+        """The equation in LaTeX."""
+        if self.formula is None:
+            return rf"{self.symbol} = \text{{{self.formula_note}}}"
+        import sympy
+
+        names = {sympy.Symbol(s, positive=True): _latex_name(s) for s in self._symbols}
+        return f"{self.symbol} = {sympy.latex(self.expression(), symbol_names=names)}"
+
+    @cached_property
+    def _symbols(self) -> tuple[str, ...]:
+        return (*self.variables, *(f.name for f in dataclasses.fields(self)))
+
+    def _arguments(self, args: tuple, kwargs: dict, out_of_range: OutOfRange) -> list[np.ndarray]:
+        given = dict(zip(self.variables, args, strict=False)) | kwargs
+        if len(args) > len(self.variables) or set(given) != set(self.variables):
+            raise TypeError(f"{self.name} takes {', '.join(self.variables)}; got {len(args)} values and {sorted(kwargs)}")
+        arrays = [np.asarray(given[v], float) for v in self.variables]
+        arrays[0] = self._in_range(arrays[0], out_of_range)
+        return arrays
+
+    def _in_range(self, x: np.ndarray, out_of_range: OutOfRange) -> np.ndarray:
+        if np.isnan(x).any() or (x <= 0).any():
+            raise InputError(Defect(f"{self.name} needs a positive number", field=self.variables[0], value=str(x[()])))
+        low, high = self.validity
+        outside = (x < low) | (x > high)
+        if out_of_range == "ignore" or not outside.any():
+            return x
+        if out_of_range == "clip":
+            return np.clip(x, low, high)
+        message = (
+            f"{self.name} is valid for {low:g} <= {self.variables[0]} <= {high:g}"
+            f"{f' ({self.validity_source})' if self.validity_source else ''}; "
+            f"got {np.min(x):g}{f' to {np.max(x):g}' if x.size > 1 else ''}"
+        )
+        if out_of_range == "raise":
+            raise OutOfRangeError(message)
+        warnings.warn(message, OutOfRangeWarning, stacklevel=4)
+        return x
+
+    def _value(self, *arrays: np.ndarray) -> np.ndarray:
+        return self._compiled(None, arrays)
+
+    def _derivative(self, *arrays: np.ndarray) -> np.ndarray:
+        return self._compiled(self.variables[0], arrays)
+
+    def _compiled(self, wrt: str | None, arrays: tuple[np.ndarray, ...]) -> np.ndarray:
+        function = _compile(self.formula, self._symbols, wrt)
+        shape = np.broadcast_shapes(*(a.shape for a in arrays))
+        # 1/St, log and Heaviside at the edges (St -> 0, inf) are meant: they give the limits.
+        with np.errstate(divide="ignore", over="ignore"):
+            result = function(*arrays, *self.parameters.values())
+        return np.broadcast_to(np.asarray(result, float), shape)
+
+
+@cache
+def _parse(formula: str, symbols: tuple[str, ...]) -> Any:
+    import sympy
+
+    # Formulas are constants of this package; every name in them is bound here, so none means a sympy object.
+    return sympy.sympify(formula, locals={s: sympy.Symbol(s, positive=True) for s in symbols})
+
+
+@cache
+def _compile(formula: str, symbols: tuple[str, ...], wrt: str | None) -> Any:
+    import sympy
+
+    positive = [sympy.Symbol(s, positive=True) for s in symbols]
+    expression = _parse(formula, symbols)
+    if wrt is not None:
+        expression = expression.diff(sympy.Symbol(wrt, positive=True))
+    return sympy.lambdify(positive, expression, modules="numpy", cse=True)
+
+
+def _latex_name(symbol: str) -> str:
+    """``h_min`` -> ``h_{\\mathrm{min}}``, ``beta`` -> ``\\beta``."""
+    greek = {"beta", "eps", "mu", "rho"}
+    head, _, tail = symbol.partition("_")
+    head = {"eps": r"\varepsilon"}.get(head, "\\" + head) if head in greek else head
+    return f"{head}_{{\\mathrm{{{tail}}}}}" if tail else head
+
+
+def get(name: str, **parameters: float) -> Law:
+    """The law of that name, with its default parameters but those given."""
+    import restitution.laws  # noqa: F401  (fills the registry)
+
+    try:
+        law = REGISTRY[name]
+    except KeyError:
+        import difflib
+
+        near = difflib.get_close_matches(name, REGISTRY, n=3)
+        hint = f"; did you mean {', '.join(near)}?" if near else "; see 'restitution laws list'"
+        raise InputError(f"unknown law {name!r}{hint}") from None
+    return law().replace(**parameters)

@@ -1,0 +1,69 @@
+"""How e_eff is defined: rebound speed over impact speed under liquid, as a law of the Stokes number.
+
+    e_eff = v_out / v_in,   0 <= e_eff <= e_dry,   e_eff -> e_dry as St -> infinity,
+
+v_in and v_out being the normal speeds of the sphere before and after the impact by one and the same
+definition (:class:`restitution.stokes.Speed`). This module is what all rebound laws share; the laws
+themselves stand in the modules beside it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from restitution.conditions import Conditions
+from restitution.errors import ConventionError
+from restitution.laws.base import Law, OutOfRange
+from restitution.stokes import Speed, StokesNumber
+
+
+@dataclass(frozen=True)
+class ReboundLaw(Law):
+    """e_eff(St, e_dry). St is a :class:`StokesNumber`, converted to the law's own convention or refused."""
+
+    family: ClassVar[str] = "rebound"
+    symbol: ClassVar[str] = r"e_{\mathrm{eff}}"
+    variables: ClassVar[tuple[str, ...]] = ("St", "e_dry")
+    convention: ClassVar[str] = "st"
+    speed: ClassVar[Speed] = Speed.UNSTATED
+    """The impact speed its source means; ``unstated`` takes any."""
+
+    def __call__(
+        self,
+        St: StokesNumber,
+        e_dry: Any,
+        conditions: Conditions | None = None,
+        out_of_range: OutOfRange = "warn",
+    ) -> Any:
+        """e_eff, dimensionless, of the broadcast shape of ``St.value`` and ``e_dry``.
+
+        ``conditions`` are needed only where the conversion of conventions needs them. Raises
+        :class:`ConventionError` for a bare number or for another impact speed than the law's.
+        """
+        return super().__call__(self._own(St, conditions).value, e_dry, out_of_range=out_of_range)
+
+    def derivative(
+        self,
+        St: StokesNumber,
+        e_dry: Any,
+        conditions: Conditions | None = None,
+        out_of_range: OutOfRange = "warn",
+    ) -> Any:
+        """d e_eff / d St with respect to ``St`` in the convention in which it was given."""
+        own = self._own(St, conditions)
+        chain = own.value / St.value
+        return super().derivative(own.value, e_dry, out_of_range=out_of_range) * chain
+
+    def _own(self, St: StokesNumber, conditions: Conditions | None) -> StokesNumber:
+        if not isinstance(St, StokesNumber):
+            raise ConventionError(
+                f"{self.name} was given a bare number {St!r} as Stokes number; "
+                f"say which one it is: StokesNumber({St!r}, {self.convention!r})"
+            )
+        if Speed.UNSTATED not in (self.speed, St.speed) and self.speed != St.speed:
+            raise ConventionError(
+                f"{self.name} is meant for the {self.speed} impact speed, the Stokes number was made with the "
+                f"{St.speed} speed; these cannot be converted. St.read_as({self.speed.value!r}) ignores the difference"
+            )
+        return St.to(self.convention, conditions)
