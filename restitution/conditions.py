@@ -92,7 +92,9 @@ def read_conditions(path: str | Path) -> Conditions:
     except OSError as error:
         raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
     except UnicodeDecodeError as error:
-        raise InputError(Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", str(path))) from None
+        raise InputError(
+            Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", str(path))
+        ) from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(Defect(f"is not TOML: {error}", str(path))) from None
     try:

@@ -21,7 +21,10 @@ class Defect:
 
     def __str__(self) -> str:
         place = ":".join(str(p) for p in (self.file, self.row) if p is not None)
-        what = [f"{self.field}" if self.field is not None else "", f"= {self.value!r}" if self.value is not None else ""]
+        what = [
+            f"{self.field}" if self.field is not None else "",
+            f"= {self.value!r}" if self.value is not None else "",
+        ]
         subject = " ".join(w for w in what if w)
         return ": ".join(part for part in (place, subject, self.rule) if part)
 

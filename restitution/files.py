@@ -40,7 +40,9 @@ def write_folder(folder: str | Path, contents: Mapping[str, str | bytes]) -> Non
         for temporary, target in aside:
             temporary.replace(target)
     except OSError as error:
-        raise InputError(Defect(f"cannot be written: {error.strerror or error}", str(error.filename or folder))) from None
+        raise InputError(
+            Defect(f"cannot be written: {error.strerror or error}", str(error.filename or folder))
+        ) from None
     finally:
         for temporary, _ in aside:
             temporary.unlink(missing_ok=True)

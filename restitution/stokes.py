@@ -53,6 +53,7 @@ class Convention:
     """One definition of the Stokes number: ``per_speed(conditions)`` is St over the impact speed, in s/m."""
 
     key: str
+    symbol: str
     latex: str
     definition: str
     source: str
@@ -73,6 +74,7 @@ CONVENTIONS: dict[str, Convention] = {
     for c in (
         Convention(
             "st",
+            "St",
             r"St = \rho_p v d / (9 \mu)",
             "rho_p v d/(9 mu)",
             "Joseph et al. 2001; Gondret et al. 2002; Biegert et al. 2017, arXiv:1608.03566, introduction",
@@ -80,13 +82,17 @@ CONVENTIONS: dict[str, Convention] = {
         ),
         Convention(
             "st_star",
+            "St^*",
             r"St^* = (\rho_p + \rho_f/2) v d / (9 \mu)",
             "(rho_p + rho_f/2) v d/(9 mu)",
             "Legendre et al. 2005, 2006, as implemented in public code (added-mass coefficient 0.5)",
-            lambda c: (c.sphere.density + 0.5 * c.fluid.density) * c.sphere.diameter / (9 * c.fluid.viscosity),
+            lambda c: (
+                (c.sphere.density + 0.5 * c.fluid.density) * c.sphere.diameter / (9 * c.fluid.viscosity)
+            ),
         ),
         Convention(
             "st_d",
+            "St_d",
             r"St_d = \rho_p v d / \mu",
             "rho_p v d/mu",
             "YADE lubrication validation script",
@@ -94,6 +100,7 @@ CONVENTIONS: dict[str, Convention] = {
         ),
         Convention(
             "st_18",
+            "St_{18}",
             r"St_{18} = \rho_p v d / (18 \mu)",
             "rho_p v d/(18 mu)",
             "common in the turbulence literature; no single source was opened",
@@ -101,6 +108,7 @@ CONVENTIONS: dict[str, Convention] = {
         ),
         Convention(
             "st_b",
+            "St_B",
             r"St_B = m^* v / (6 \pi \mu r^{*2})",
             "m* v/(6 pi mu r*^2), m* = m1 m2/(m1+m2), r* = r1 r2/(r1+r2)",
             "Davis et al. 1986; Yang & Hunt 2006; Nijssen et al. 2022",

@@ -12,6 +12,7 @@ in ``formula_note``. Sympy is imported when a law is first evaluated, not when i
 from __future__ import annotations
 
 import dataclasses
+import re
 import warnings
 from dataclasses import dataclass
 from enum import StrEnum
@@ -88,8 +89,27 @@ class Law:
             value = getattr(self, f.name)
             if not low <= value <= high:  # also refuses NaN
                 raise InputError(
-                    Defect(f"parameter of {self.name} outside its bounds [{low:g}, {high:g}]", None, None, f.name, f"{value:g}")
+                    Defect(
+                        f"parameter of {self.name} outside its bounds [{low:g}, {high:g}]",
+                        None,
+                        None,
+                        f.name,
+                        f"{value:g}",
+                    )
                 )
+
+    def _ordered(self, lower: str, upper: str) -> None:
+        """Refuse parameters of which ``lower`` is not below ``upper``."""
+        if getattr(self, lower) >= getattr(self, upper):
+            raise InputError(
+                Defect(
+                    f"must be below {upper} = {getattr(self, upper):g} in {self.name}",
+                    None,
+                    None,
+                    lower,
+                    f"{getattr(self, lower):g}",
+                )
+            )
 
     @classmethod
     def parameter_fields(cls) -> tuple[dataclasses.Field, ...]:
@@ -106,7 +126,11 @@ class Law:
         known = [f.name for f in dataclasses.fields(self)]
         for name in parameters:
             if name not in known:
-                raise InputError(Defect(f"not a parameter of {self.name}; it has: {', '.join(known) or 'none'}", field=name))
+                raise InputError(
+                    Defect(
+                        f"not a parameter of {self.name}; it has: {', '.join(known) or 'none'}", field=name
+                    )
+                )
         return dataclasses.replace(self, **parameters)
 
     def __call__(self, *args: Any, out_of_range: OutOfRange = "warn", **kwargs: Any) -> Any:
@@ -129,8 +153,13 @@ class Law:
             return rf"{self.symbol} = \text{{{self.formula_note}}}"
         import sympy
 
-        names = {sympy.Symbol(s, positive=True): _latex_name(s) for s in self._symbols}
-        return f"{self.symbol} = {sympy.latex(self.expression(), symbol_names=names)}"
+        names = {sympy.Symbol(s, positive=True): self._latex_name(s) for s in self._symbols}
+        # exp(x) would be typeset as a power of e, which here is a restitution.
+        shown = self.expression().replace(sympy.exp, sympy.Function(r"\exp"))
+        return f"{self.symbol} = {sympy.latex(shown, symbol_names=names, order='none')}"
+
+    def _latex_name(self, symbol: str) -> str:
+        return latex_name(symbol)
 
     @cached_property
     def _symbols(self) -> tuple[str, ...]:
@@ -139,14 +168,18 @@ class Law:
     def _arguments(self, args: tuple, kwargs: dict, out_of_range: OutOfRange) -> list[np.ndarray]:
         given = dict(zip(self.variables, args, strict=False)) | kwargs
         if len(args) > len(self.variables) or set(given) != set(self.variables):
-            raise TypeError(f"{self.name} takes {', '.join(self.variables)}; got {len(args)} values and {sorted(kwargs)}")
+            raise TypeError(
+                f"{self.name} takes {', '.join(self.variables)}; got {len(args)} values and {sorted(kwargs)}"
+            )
         arrays = [np.asarray(given[v], float) for v in self.variables]
         arrays[0] = self._in_range(arrays[0], out_of_range)
         return arrays
 
     def _in_range(self, x: np.ndarray, out_of_range: OutOfRange) -> np.ndarray:
         if np.isnan(x).any() or (x <= 0).any():
-            raise InputError(Defect(f"{self.name} needs a positive number", field=self.variables[0], value=str(x[()])))
+            raise InputError(
+                Defect(f"{self.name} needs a positive number", field=self.variables[0], value=str(x[()]))
+            )
         low, high = self.validity
         outside = (x < low) | (x > high)
         if out_of_range == "ignore" or not outside.any():
@@ -197,12 +230,12 @@ def _compile(formula: str, symbols: tuple[str, ...], wrt: str | None) -> Any:
     return sympy.lambdify(positive, expression, modules="numpy", cse=True)
 
 
-def _latex_name(symbol: str) -> str:
-    """``h_min`` -> ``h_{\\mathrm{min}}``, ``beta`` -> ``\\beta``."""
-    greek = {"beta", "eps", "mu", "rho"}
-    head, _, tail = symbol.partition("_")
-    head = {"eps": r"\varepsilon"}.get(head, "\\" + head) if head in greek else head
-    return f"{head}_{{\\mathrm{{{tail}}}}}" if tail else head
+def latex_name(symbol: str) -> str:
+    """``h_min`` -> ``h_{\\mathrm{min}}``, ``h0`` -> ``h_{0}``, ``beta`` -> ``\\beta``."""
+    greek = {"beta": r"\beta", "eps": r"\varepsilon", "eta": r"\eta", "mu": r"\mu", "rho": r"\rho"}
+    letters, digits, word = re.fullmatch(r"([A-Za-z]+)(\d*)_?(.*)", symbol).groups()
+    below = digits + (rf"\mathrm{{{word}}}" if len(word) > 1 else word)
+    return greek.get(letters, letters) + (f"_{{{below}}}" if below else "")
 
 
 def get(name: str, **parameters: float) -> Law:

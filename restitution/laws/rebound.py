@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 from restitution.conditions import Conditions
 from restitution.errors import ConventionError
 from restitution.laws.base import Law, OutOfRange
-from restitution.stokes import Speed, StokesNumber
+from restitution.stokes import Speed, StokesNumber, convention
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,9 @@ class ReboundLaw(Law):
         own = self._own(St, conditions)
         chain = own.value / St.value
         return super().derivative(own.value, e_dry, out_of_range=out_of_range) * chain
+
+    def _latex_name(self, symbol: str) -> str:
+        return convention(self.convention).symbol if symbol == "St" else super()._latex_name(symbol)
 
     def _own(self, St: StokesNumber, conditions: Conditions | None) -> StokesNumber:
         if not isinstance(St, StokesNumber):
