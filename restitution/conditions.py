@@ -31,11 +31,14 @@ class Fluid(_Record):
 
 
 class Sphere(_Record):
-    """``diameter`` d in m, ``density`` rho_p in kg/m3, dry restitution ``e_dry``, ``roughness`` in m."""
+    """``diameter`` d in m, ``density`` rho_p in kg/m3, dry restitution ``e_dry``, ``roughness`` in m.
+
+    ``e_dry`` and ``roughness`` are None where nobody states them.
+    """
 
     diameter: Positive
     density: Positive
-    e_dry: Annotated[float, Field(gt=0, le=1)] = 0.97
+    e_dry: Annotated[float, Field(gt=0, le=1)] | None = None
     roughness: NonNegative | None = None
 
     @property
@@ -92,9 +95,7 @@ def read_conditions(path: str | Path) -> Conditions:
     except OSError as error:
         raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
     except UnicodeDecodeError as error:
-        raise InputError(
-            Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", str(path))
-        ) from None
+        raise InputError(Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", str(path))) from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(Defect(f"is not TOML: {error}", str(path))) from None
     try:

@@ -86,9 +86,7 @@ CONVENTIONS: dict[str, Convention] = {
             r"St^* = (\rho_p + \rho_f/2) v d / (9 \mu)",
             "(rho_p + rho_f/2) v d/(9 mu)",
             "Legendre et al. 2005, 2006, as implemented in public code (added-mass coefficient 0.5)",
-            lambda c: (
-                (c.sphere.density + 0.5 * c.fluid.density) * c.sphere.diameter / (9 * c.fluid.viscosity)
-            ),
+            lambda c: (c.sphere.density + 0.5 * c.fluid.density) * c.sphere.diameter / (9 * c.fluid.viscosity),
         ),
         Convention(
             "st_d",

@@ -29,5 +29,5 @@ for _module in pkgutil.iter_modules(__path__):
 
 
 def names(family: str | None = None) -> list[str]:
-    """Names of the laws, of one family (``rebound``, ``resistance``, ...) or of all, in the order of their modules."""
+    """Names of the laws of one family (``rebound``, ``resistance``, ...) or of all, in the order of modules."""
     return [name for name, law in REGISTRY.items() if family in (None, law.family)]

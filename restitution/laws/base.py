@@ -127,9 +127,7 @@ class Law:
         for name in parameters:
             if name not in known:
                 raise InputError(
-                    Defect(
-                        f"not a parameter of {self.name}; it has: {', '.join(known) or 'none'}", field=name
-                    )
+                    Defect(f"not a parameter of {self.name}; it has: {', '.join(known) or 'none'}", field=name)
                 )
         return dataclasses.replace(self, **parameters)
 
@@ -231,8 +229,16 @@ def _compile(formula: str, symbols: tuple[str, ...], wrt: str | None) -> Any:
 
 
 def latex_name(symbol: str) -> str:
-    """``h_min`` -> ``h_{\\mathrm{min}}``, ``h0`` -> ``h_{0}``, ``beta`` -> ``\\beta``."""
-    greek = {"beta": r"\beta", "eps": r"\varepsilon", "eta": r"\eta", "mu": r"\mu", "rho": r"\rho"}
+    r"""``h_min`` -> ``h_{\mathrm{min}}``, ``h0`` -> ``h_{0}``, ``beta`` -> ``\beta``."""
+    greek = {
+        "beta": r"\beta",
+        "eps": r"\varepsilon",
+        "eta": r"\eta",
+        "kappa": r"\kappa",
+        "mu": r"\mu",
+        "rho": r"\rho",
+        "sigma": r"\sigma",
+    }
     letters, digits, word = re.fullmatch(r"([A-Za-z]+)(\d*)_?(.*)", symbol).groups()
     below = digits + (rf"\mathrm{{{word}}}" if len(word) > 1 else word)
     return greek.get(letters, letters) + (f"_{{{below}}}" if below else "")

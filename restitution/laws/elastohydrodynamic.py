@@ -38,7 +38,7 @@ def _loss() -> Any:
 
 
 def _e_ehd(St: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """e of the smooth sphere and its derivative in St; power laws beyond the ends of the table, zero at St <= 0."""
+    """e of the smooth sphere and its derivative in St; power laws beyond the ends of the table."""
     x = np.log(np.maximum(St, 1e-300))
     ends = np.log([NODES_ST[0], NODES_ST[-1]])
     inside = np.clip(x, *ends)
@@ -89,9 +89,7 @@ class EhdComposite(ReboundLaw):
     validity_source: ClassVar = "s St within the table"
     reference: ClassVar = _REFERENCE
     status: ClassVar = Status.DERIVED
-    evidence: ClassVar = (
-        "composition of two derived pieces; assumes smooth bodies, E* = 55 GPa for the default D*"
-    )
+    evidence: ClassVar = "composition of two derived pieces; assumes smooth bodies, E* = 55 GPa for the default D*"
     checks: ClassVar = tuple(
         CheckValue(
             {"St": St, "e_dry": 0.97}, e, 0.012,

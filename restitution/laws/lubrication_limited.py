@@ -40,7 +40,7 @@ class TwoWayLubrication(ReboundLaw):
             {"St": 78.6, "e_dry": 0.97}, 0.744, 6e-4, "independent evaluation of e - 9(1+e)/St",
             {"h0": 1.0, "h_min": 1.23409804e-4},
         ),
-        CheckValue({"St": 18.7, "e_dry": 0.97}, 0.0, 6e-4, "threshold 18.7 for h_min = 1e-4 r, evaluated independently"),
+        CheckValue({"St": 18.7, "e_dry": 0.97}, 0.0, 6e-4, "threshold for h_min = 1e-4 r, independently"),
     )  # fmt: skip
     h0: float = parameter(
         1.0, (1e-3, 10.0), "r", "gap where the film begins to act", "order of the radius; a choice"

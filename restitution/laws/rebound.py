@@ -67,6 +67,6 @@ class ReboundLaw(Law):
         if Speed.UNSTATED not in (self.speed, St.speed) and self.speed != St.speed:
             raise ConventionError(
                 f"{self.name} is meant for the {self.speed} impact speed, the Stokes number was made with the "
-                f"{St.speed} speed; these cannot be converted. St.read_as({self.speed.value!r}) ignores the difference"
+                f"{St.speed} speed; these cannot be converted. St.read_as({self.speed.value!r}) ignores that"
             )
         return St.to(self.convention, conditions)

@@ -31,9 +31,7 @@ _INDEPENDENT = "evaluated independently of this package when the readings were f
 
 
 def _K() -> float:
-    return parameter(
-        18.0, (0.0, 200.0), "1", "prefactor of (1 + e_dry)", "the surviving '18(1 + e)' of Eq. (4)"
-    )
+    return parameter(18.0, (0.0, 200.0), "1", "prefactor of (1 + e_dry)", "the surviving '18(1 + e)' of Eq. (4)")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,120 @@
+"""One branch of the motion next to a contact, as polynomials averaged over windows and orders.
+
+How many frames to use, and with which polynomial, is a choice that moves a slope as much as the noise does.
+Instead of making it, every window of the n frames nearest to the contact is fitted with every order p, and
+each fit weighs exp(-AIC/2),
+
+    AIC = chi^2_aug + 2 (p + 1) + 2 n_cut,
+
+n_cut being the number of frames left out and chi^2_aug the misfit augmented by that of the prior (Jay & Neil,
+Phys. Rev. D 103, 114502 (2021), doi:10.1103/PhysRevD.103.114502). The prior only says that the acceleration
+of a sphere in liquid is of the order of gravity and changes over times of the order of sqrt(d/g); it matters
+where a branch has hardly more frames than the polynomial has coefficients. Draws from the mixture carry both
+the noise and the choice of window.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.conditions import Conditions
+
+ORDERS = (1, 2, 3, 4, 5)
+_COEFFICIENTS = max(ORDERS) + 1
+_MOST_WINDOWS = 24
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Fits of gap(tau) = sum_k c_k tau^k, tau in s from the origin: coefficients, covariance roots, weights."""
+
+    coefficients: NDArray  # (fits, 6)
+    roots: NDArray  # (fits, 6, 6), a square root of each covariance
+    weights: NDArray  # (fits,), sum 1
+
+    def draw(self, size: int, rng: np.random.Generator) -> NDArray:
+        """``size`` sets of coefficients, shape (size, 6), from the weighted mixture."""
+        which = rng.choice(len(self.weights), size, p=self.weights)
+        normal = rng.standard_normal((size, _COEFFICIENTS))
+        return self.coefficients[which] + np.einsum("sij,sj->si", self.roots[which], normal)
+
+
+def prior_scale(conditions: Conditions) -> NDArray:
+    """Prior standard deviations of the coefficients c_k: none for gap and velocity, A T^(2-k)/k! from k = 2 on.
+
+    A = 3 g, the deceleration after the first rebound of the 3 mm sphere of Gondret et al. (2002), the largest
+    in the shipped records, and T = sqrt(d/g).
+    """
+    A, T = 3 * conditions.gravity, math.sqrt(conditions.sphere.diameter / conditions.gravity)
+    return np.array([np.inf, np.inf] + [A * T ** (2 - k) / math.factorial(k) for k in range(2, _COEFFICIENTS)])
+
+
+def average(tau: NDArray, value: NDArray, sigma: float, quantity: str, prior: NDArray) -> Branch:
+    """Fit all windows and orders to the frames of a branch, nearest to the contact first.
+
+    ``value`` is a gap in m or a velocity in m/s; of a velocity the gap polynomial without its constant is
+    fitted. At least two frames are needed.
+    """
+    N, first = len(tau), _first(quantity)
+    parts, aic = [], []
+    for p in ORDERS:
+        windows = _windows(p + 1 - first, N)
+        if not len(windows):
+            continue
+        coefficients, roots, misfit = _fit(tau, value, windows, sigma, quantity, p, prior)
+        parts.append((coefficients, roots))
+        aic.append(misfit + 2 * (p + 1 - first) + 2 * (N - windows))
+    aic = np.concatenate(aic)
+    weights = np.exp(-0.5 * (aic - aic.min()))
+    coefficients, roots = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Branch(coefficients, roots, weights / weights.sum())
+
+
+def line(tau: NDArray, value: NDArray, sigma: float, quantity: str) -> Branch:
+    """The straight line through all frames by least squares: the mean slope, no average, no prior."""
+    everything, no_prior = np.array([len(tau)]), np.full(_COEFFICIENTS, np.inf)
+    coefficients, roots, _ = _fit(tau, value, everything, sigma, quantity, 1, no_prior)
+    return Branch(coefficients, roots, np.ones(1))
+
+
+def _fit(
+    tau: NDArray, value: NDArray, windows: NDArray, sigma: float, quantity: str, p: int, prior: NDArray
+) -> tuple[NDArray, NDArray, NDArray]:
+    """Least-squares polynomials of order p over the windows: coefficients, covariance roots, chi^2_aug."""
+    used = slice(_first(quantity), p + 1)
+    powers = np.arange(_COEFFICIENTS)[used]
+    # Fitted in units of the window, for the conditioning; frames outside a window get no weight.
+    scale = np.maximum.accumulate(np.abs(tau))[windows - 1][:, None]
+    scale[scale == 0] = 1.0
+    x = (tau / scale)[:, :, None]
+    design = x**powers if quantity == "gap" else powers * x ** (powers - 1) / scale[:, :, None]
+    inside = (np.arange(len(tau)) < windows[:, None]) / sigma
+    unscale = scale ** -powers.astype(float)
+    A = np.concatenate(
+        [inside[:, :, None] * design, np.eye(len(powers)) * (unscale / prior[used])[:, None]], axis=1
+    )
+    b = np.concatenate([inside * value, np.zeros((len(windows), len(powers)))], axis=1)
+    Q, R = np.linalg.qr(A)
+    inverse = np.linalg.inv(R)
+    c = np.einsum("wij,wkj,wk->wi", inverse, Q, b)
+    misfit = np.sum((b - np.einsum("wki,wi->wk", A, c)) ** 2, axis=1)
+    coefficients = np.zeros((len(windows), _COEFFICIENTS))
+    roots = np.zeros((len(windows), _COEFFICIENTS, _COEFFICIENTS))
+    coefficients[:, used] = unscale * c
+    roots[:, used, used] = unscale[:, :, None] * inverse
+    return coefficients, roots, misfit
+
+
+def _first(quantity: str) -> int:
+    return 1 if quantity == "velocity" else 0
+
+
+def _windows(least: int, N: int) -> NDArray:
+    """Window lengths from ``least`` to ``N``: all of them, or a geometric choice of a long record."""
+    if N - least < _MOST_WINDOWS:
+        return np.arange(least, N + 1)
+    return np.unique(np.rint(np.geomspace(least, N, _MOST_WINDOWS)).astype(int))

@@ -1,0 +1,33 @@
+"""Options that more than one command has."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def add_columns(parser: argparse.ArgumentParser) -> None:
+    """``--column COLUMN=NAME``, repeatable: the file's own names; gathered in ``args.column`` as pairs."""
+    parser.add_argument(
+        "--column",
+        action="append",
+        default=[],
+        type=_pair,
+        metavar="COLUMN=NAME",
+        help="the file's own NAME for a column, as in gap_m=y; other columns are then ignored; may be repeated",
+    )
+
+
+def _pair(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not (name and equals and value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=VALUE")
+    return name, value
+
+
+def assignment(text: str) -> tuple[str, float]:
+    """``NAME=NUMBER`` as an argument type."""
+    name, value = _pair(text)
+    try:
+        return name, float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None

@@ -1,0 +1,53 @@
+"""What the commands print: to a terminal in its width, elsewhere plain and unbroken, one line a row."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+
+def show(what: RenderableType) -> None:
+    """Print a text or a rich table."""
+    from rich.console import Console
+
+    console = Console(highlight=False, markup=False, soft_wrap=isinstance(what, str))
+    if not console.is_terminal:
+        console.width = 10_000
+    with console.capture() as capture:
+        console.print(what)
+    sys.stdout.write("".join(f"{line.rstrip()}\n" for line in capture.get().splitlines()))
+
+
+def show_rows(headings: Sequence[str], rows: Iterable[Sequence[str]], right: Iterable[str] = ()) -> None:
+    """Print a table; the columns named in ``right`` are aligned right."""
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="bold")
+    for heading in headings:
+        table.add_column(heading, justify="right" if heading in set(right) else "left", overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    show(table)
+
+
+def show_facts(facts: Iterable[tuple[str, str]]) -> None:
+    """Print names and what is to be said of each, in two columns."""
+    from rich.table import Table
+
+    table = Table.grid("key", "value", padding=(0, 2))
+    table.columns[0].style, table.columns[0].no_wrap = "bold", True
+    for key, value in facts:
+        table.add_row(key, value)
+    show(table)
+
+
+def cell(value: object) -> str:
+    """A value of a table as text; nothing for a missing one."""
+    if isinstance(value, float):
+        return "" if math.isnan(value) else f"{value:.9g}"
+    return str(value)

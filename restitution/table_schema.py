@@ -1,0 +1,97 @@
+"""What a table must satisfy: the models of a Table Schema and of the rules it cannot say itself.
+
+Types and bounds are those of the Table Schema standard (https://datapackage.org/standard/table-schema/); rules
+between rows and between fields stand in its custom property ``restitution:rules``.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import Field as PydanticField
+
+from restitution.conditions import defects_of
+from restitution.errors import Defect, InputError
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class _Record(BaseModel):
+    # A rule that is misspelt or not carried out here must not pass as one that is.
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+
+class Constraints(_Record):
+    """What one cell must satisfy; bounds are in the unit of the field."""
+
+    required: bool = False
+    minimum: float | None = None
+    maximum: float | None = None
+    exclusive_minimum: float | None = PydanticField(None, alias="exclusiveMinimum")
+    exclusive_maximum: float | None = PydanticField(None, alias="exclusiveMaximum")
+    enum: tuple[str, ...] | None = None
+
+
+class Field(_Record):
+    """One column: ``unit`` in SI ("1" for a pure number, "" for text)."""
+
+    name: str
+    type: Literal["number", "integer", "string"]
+    description: str
+    unit: str = ""
+    constraints: Constraints = Constraints()
+
+
+class RequiredWhen(_Record):
+    """``field`` must not be empty in rows where every field of ``when`` has the given value."""
+
+    field: str
+    when: dict[str, str]
+
+
+class Rules(_Record):
+    """Rules between rows and between fields, checked on the rows whose cells are valid."""
+
+    minimum_rows: int = 1
+    strictly_increasing: tuple[str, ...] = ()
+    unique: tuple[tuple[str, ...], ...] = ()
+    required_when: tuple[RequiredWhen, ...] = ()
+
+
+class Schema(_Record):
+    """A kind of table. ``fields`` are its columns in their usual order."""
+
+    standard: str | None = PydanticField(None, alias="$schema")
+    name: str
+    title: str
+    description: str = ""
+    fields: tuple[Field, ...]
+    rules: Rules = PydanticField(Rules(), alias="restitution:rules")
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        return tuple(f.name for f in self.fields)
+
+    @property
+    def required(self) -> tuple[str, ...]:
+        return tuple(f.name for f in self.fields if f.constraints.required)
+
+
+def read_record(path: str | Path, model: type[Model]) -> Model:
+    """A JSON file as a ``model``; raises :class:`InputError` naming every field that is wrong."""
+    try:
+        return model.model_validate(json.loads(Path(path).read_bytes()))
+    except OSError as error:
+        raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
+    except ValidationError as error:
+        raise InputError(*defects_of(error, str(path))) from None
+    except ValueError as error:
+        raise InputError(Defect(f"is not JSON: {error}", str(path))) from None
+
+
+def read_schema(path: str | Path) -> Schema:
+    """The schema in a JSON file; raises :class:`InputError` naming what is wrong with it."""
+    return read_record(path, Schema)
