@@ -57,21 +57,29 @@ def average(tau: NDArray, value: NDArray, sigma: float, quantity: str, prior: ND
     """Fit all windows and orders to the frames of a branch, nearest to the contact first.
 
     ``value`` is a gap in m or a velocity in m/s; of a velocity the gap polynomial without its constant is
-    fitted. At least two frames are needed.
+    fitted. At least two frames are needed. Where no fit with four or more degrees of freedom has chi^2 below
+    them, the noise is scaled up until the best one has (as the Particle Data Group scales errors).
     """
     N, first = len(tau), _first(quantity)
-    parts, aic = [], []
+    coefficients, roots, misfit, unknowns, windows = [], [], [], [], []
     for p in ORDERS:
-        windows = _windows(p + 1 - first, N)
-        if not len(windows):
-            continue
-        coefficients, roots, misfit = _fit(tau, value, windows, sigma, quantity, p, prior)
-        parts.append((coefficients, roots))
-        aic.append(misfit + 2 * (p + 1 - first) + 2 * (N - windows))
-    aic = np.concatenate(aic)
+        lengths = _windows(p + 1 - first, N)
+        if len(lengths):
+            c, root, chi2 = _fit(tau, value, lengths, sigma, quantity, p, prior)
+            coefficients.append(c)
+            roots.append(root)
+            misfit.append(chi2)
+            unknowns.append(np.full(len(lengths), p + 1 - first))
+            windows.append(lengths)
+    misfit, unknowns, windows = (np.concatenate(x) for x in (misfit, unknowns, windows))
+    free = windows - unknowns
+    tested = free >= 4
+    scale = np.min(misfit[tested] / free[tested], initial=np.inf)
+    if 1 < scale < np.inf:  # no polynomial describes the frames within the noise: it is larger than stated
+        return average(tau, value, sigma * np.sqrt(scale) * (1 + 1e-6), quantity, prior)
+    aic = misfit + 2 * unknowns + 2 * (N - windows)
     weights = np.exp(-0.5 * (aic - aic.min()))
-    coefficients, roots = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return Branch(coefficients, roots, weights / weights.sum())
+    return Branch(np.concatenate(coefficients), np.concatenate(roots), weights / weights.sum())
 
 
 def line(tau: NDArray, value: NDArray, sigma: float, quantity: str) -> Branch:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+import math
 from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
@@ -19,6 +20,7 @@ from restitution.errors import Defect, InputError
 from restitution.stokes import CONVENTIONS, Speed
 from restitution.table_schema import Schema, read_record, read_schema
 from restitution.tables import check_table, read_header, read_table
+from restitution.tracks import Track
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -84,6 +86,11 @@ class ReadingError(_Record):
     sigma: dict[str, NonNegative] = {}
     offset_sigma: dict[str, NonNegative] = {}
     scale_sigma: dict[str, NonNegative] = {}
+
+    @property
+    def speed_scale_sigma(self) -> float:
+        """Relative error common to all speeds of a track: of the scales of length and of time."""
+        return math.hypot(*self.scale_sigma.values())
 
 
 class QuotedConventions(_Record):
@@ -174,6 +181,14 @@ def load(name: str) -> pd.DataFrame:
     if defects:
         raise InputError(*defects)
     return read_table(folder() / r.path, read_schema(folder() / r.schema_path))
+
+
+def load_track(name: str, sigma: float | None = None) -> Track:
+    """A trajectory or settling record as a track; noise estimated if ``sigma`` is not given."""
+    r = resource(name)
+    if r.table not in ("trajectory", "settling"):
+        raise InputError(f"{name} is a {r.table} table, not a track")
+    return Track.from_table(load(name), sigma, r.digitisation_error.speed_scale_sigma)
 
 
 def read_package(path: str | Path | None = None) -> tuple[Path, Package]:

@@ -2,7 +2,8 @@
 
 The frames of the approach and of the rebound are fitted by polynomials averaged over windows and orders
 (:mod:`restitution.branch`). The contact time t_c is where the two extrapolated branches meet, and the speed is
-the slope of a branch at t_c. The definitions differ in the frames that the branches are fitted to:
+the slope of a branch at t_c; where a soft contact is resolved, each branch ends where its own gap is zero.
+The definitions differ in the frames that the branches are fitted to:
 
 - ``far``: frames outside the film only, gap >= h_film = 0.1 d. It is the speed with which the motion outside the
   film would meet the wall, neither slowed by the film nor mixed with the fall from where it was looked at.
@@ -31,7 +32,7 @@ from restitution.tracks import DETECTION, Contact, Track
 
 H_FILM = 0.1
 """Gap outside which the sphere counts as outside the film, in diameters."""
-DRAWS = 2000
+DRAWS = 4000
 
 
 class UnresolvedError(Exception):
@@ -71,7 +72,8 @@ class SpeedMeasure:
         else:
             after.insert(0, contact.nearest)
         t_c, v_in, v_out = self._meet(before, after, rng)
-        return Speeds(t_c, _positive(v_in, "approach"), _positive(v_out, "rebound"), None, "")
+        scale = self._scale(rng)
+        return Speeds(t_c, scale * _positive(v_in, "approach"), scale * _positive(v_out, "rebound"), None, "")
 
     def _precedes(self, frame: int, before: list[int], after: list[int], rng: np.random.Generator) -> bool:
         """On which side of the contact the nearest frame lies, by the contact time of the others."""
@@ -83,11 +85,15 @@ class SpeedMeasure:
     def _meet(self, before: list[int], after: list[int], rng: np.random.Generator) -> tuple[NDArray, ...]:
         """Draws of the contact time, the speed of the approach and that of the rebound."""
         low, high = self.track.time_s[before[0]], self.track.time_s[after[0]]
+        overlap = self.track.quantity == "gap" and self._touching([*before[:2], *after[:2]]).any()
         before, after = self._usable(before, "approach"), self._usable(after, "rebound")
         origin = 0.5 * (low + high)
         incoming, outgoing = self._fit(before, origin).draw(DRAWS, rng), self._fit(after, origin).draw(DRAWS, rng)
         if self.track.quantity == "velocity":
             tau = rng.uniform(low - origin, high - origin, DRAWS)  # velocities do not say where between two frames
+        elif overlap:  # a contact that lasts: each branch ends where its own gap does
+            tau, left = _root(incoming, np.zeros(DRAWS)), _root(outgoing, np.zeros(DRAWS))
+            return origin + tau, -_slope(incoming, tau), _slope(outgoing, left)
         else:
             tau = _root(incoming - outgoing, np.zeros(DRAWS))
             # Far from the frames that were fitted on both sides the branches do not meet.
@@ -99,7 +105,7 @@ class SpeedMeasure:
         use = np.asarray(frames, int)
         gap = self._gaps(use)
         if self.track.quantity == "gap":
-            touching = gap <= -3 * self.track.sigma  # overlap of a simulated soft contact
+            touching = self._touching(use)
             use, gap = use[~touching], gap[~touching]
         if self.speed is Speed.FAR:
             if np.max(gap, initial=0.0) < self.film_m:
@@ -110,6 +116,10 @@ class SpeedMeasure:
         if len(use) < (self.window_frames if self.speed is Speed.WINDOW else 2):
             raise UnresolvedError(f"only {len(use)} frames resolve the {branch}")
         return use
+
+    def _touching(self, frames: NDArray | list[int]) -> NDArray:
+        """Frames in the overlap of a soft contact, which belong to neither branch."""
+        return self.track.value[frames] < -3 * self.track.sigma
 
     def _gaps(self, frames: NDArray) -> NDArray:
         """Gaps of the frames; of a velocity track by integration away from the contact."""
@@ -132,14 +142,19 @@ class SpeedMeasure:
         origin = float(self.track.time_s[use[0]])
         return self._fit(use, origin).draw(DRAWS, rng), origin
 
+    def _scale(self, rng: np.random.Generator) -> NDArray:
+        """Draws of the factor that the track's scale error puts on its speeds; it cancels in their ratio."""
+        return rng.normal(1.0, self.track.scale_sigma, DRAWS)
+
     def _quoted(self, contact: Contact, rng: np.random.Generator) -> Speeds:
         """A record that begins on the rebound: the impact speed is the quoted one."""
         quoted = self.conditions.impact
         outgoing, origin = self._alone(list(contact.rebound), "rebound", rng)
         tau = _root(outgoing, np.zeros(DRAWS))
         v_in = rng.normal(quoted.speed, quoted.speed_sigma, DRAWS)
+        v_out = self._scale(rng) * _positive(_slope(outgoing, tau), "rebound")
         note = f"impact speed ({quoted.speed_definition}) quoted by the source, not in the record"
-        return Speeds(origin + tau, v_in, _positive(_slope(outgoing, tau), "rebound"), None, note)
+        return Speeds(origin + tau, v_in, v_out, None, note)
 
     def _unresolved(self, contact: Contact, rng: np.random.Generator) -> Speeds:
         """A contact after which no flight rises above the noise: an upper limit of the rebound speed."""
@@ -155,15 +170,16 @@ class SpeedMeasure:
             fall = c.gravity * excess / (c.sphere.density + 0.5 * c.fluid.density)
             frame = float(np.median(np.diff(self.track.time_s)))
             upper = max(np.sqrt(2 * fall * limit), fall * frame)  # lower or shorter flights go unseen
-        v_in = _positive(-_slope(incoming, tau), "approach")
+        v_in = self._scale(rng) * _positive(-_slope(incoming, tau), "approach")
         return Speeds(origin + tau, v_in, None, upper, f"no rebound above {limit:.2g} {unit} is resolved")
 
 
 def _positive(speed: NDArray, branch: str) -> NDArray:
-    """The draws of a speed, if the noise leaves its sign beyond doubt."""
-    if np.mean(speed > 0) < 0.84:
+    """The draws in which the sphere moves as it was seen to: towards the wall before, away from it after."""
+    moves = speed > 0  # also drops draws whose branches do not meet
+    if np.mean(moves) < 0.5:
         raise UnresolvedError(f"the speed of the {branch} cannot be told from zero")
-    return speed
+    return np.where(moves, speed, np.nan)
 
 
 def _value(coefficients: NDArray, tau: NDArray) -> NDArray:

@@ -61,12 +61,11 @@ def find_impacts(
     if conditions.sphere.e_dry is None:
         raise InputError(Defect("must be stated: impacts are compared by e_eff / e_dry", field="sphere.e_dry"))
     measure = SpeedMeasure(track, conditions, Speed(speed), window_frames, h_film * conditions.sphere.diameter)
-    rng = np.random.default_rng(seed)
     rows, notes = [], []
-    for contact in _with_quoted_first(track, conditions, notes):
+    for i, contact in enumerate(_with_quoted_first(track, conditions, notes)):
         number = len(rows) + 1
         try:
-            found = measure(contact, rng)
+            found = measure(contact, np.random.default_rng([seed, i]))
         except UnresolvedError as reason:
             time = track.time_s[contact.nearest if contact.nearest is not None else contact.approach[-1]]
             notes.append(f"contact near t = {time:.4g} s: {reason}")

@@ -26,22 +26,26 @@ DETECTION = 5.0
 
 @dataclass(frozen=True)
 class Track:
-    """``value`` is the gap in m or the velocity (d gap/dt) in m/s at ``time_s``; ``sigma`` is its noise."""
+    """``value`` is the gap in m or the velocity (d gap/dt) in m/s at ``time_s``; ``sigma`` is its noise.
+
+    ``scale_sigma`` is a relative error that all speeds of the track share, as from its time axis.
+    """
 
     time_s: NDArray
     value: NDArray
     quantity: Literal["gap", "velocity"]
     sigma: float
+    scale_sigma: float = 0.0
 
     @classmethod
-    def from_table(cls, table: pd.DataFrame, sigma: float | None = None) -> Track:
+    def from_table(cls, table: pd.DataFrame, sigma: float | None = None, scale_sigma: float = 0.0) -> Track:
         """A track from a table with ``time_s`` and ``gap_m`` or ``velocity_m_s``; noise estimated if not given."""
         quantity = "gap" if "gap_m" in table else "velocity"
         value = table["gap_m" if quantity == "gap" else "velocity_m_s"].to_numpy(float)
         time = table["time_s"].to_numpy(float)
         if len(time) < MINIMUM_FRAMES:
             raise InputError(f"{len(time)} frames are too few for an impact; {MINIMUM_FRAMES} are needed")
-        return cls(time, value, quantity, sigma if sigma is not None else noise(time, value))
+        return cls(time, value, quantity, sigma if sigma is not None else noise(time, value), scale_sigma)
 
 
 @dataclass(frozen=True)

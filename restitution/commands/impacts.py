@@ -1,1 +1,170 @@
-def add_parser(commands): ...
+"""``restitution impacts``: from a camera track to impacts, St and e_eff."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from restitution.commands import options
+from restitution.console import show, show_rows
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from restitution.conditions import Conditions
+    from restitution.tracks import Track
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    """Declare ``impacts TRACK.csv --conditions CONDITIONS.toml``."""
+    parser = commands.add_parser(
+        "impacts",
+        help="impact speed, St and e_eff of every bounce in a track",
+        description="Print the impacts of a track (time and gap, or time and velocity), with uncertainties.",
+    )
+    parser.add_argument("track", nargs="?", metavar="TRACK", help="a CSV file, or the name of a shipped record")
+    parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML (see --template)")
+    parser.add_argument(
+        "--speed",
+        choices=("far", "contact", "window"),
+        default="far",
+        help="which speed of approach and rebound: of the motion outside the film (default), extrapolated to "
+        "contact from all frames, or the slope over a window of frames",
+    )
+    parser.add_argument("--frames", type=int, default=2, metavar="N", help="frames of the window on each side (2)")
+    parser.add_argument("--film", type=float, default=0.1, metavar="H", help="film thickness in diameters (0.1)")
+    parser.add_argument(
+        "--stokes", default="st", metavar="CONVENTION", help="st (default), st_star, st_d, st_18, st_b"
+    )
+    parser.add_argument(
+        "--sigma", type=float, metavar="S", help="noise of the track in its unit (default: estimated)"
+    )
+    options.add_columns(parser)
+    parser.add_argument("--unit", choices=("m", "mm"), help="length unit of the track; needed with --column")
+    parser.add_argument("--time-unit", choices=("s", "ms"), default="s", help="time unit of the track (s)")
+    parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
+    parser.add_argument("--template", metavar="FOLDER", help="write track.csv and conditions.toml to start from")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> None:
+    """Print the impacts of a track, and write them where asked."""
+    from restitution.errors import Defect, InputError
+    from restitution.files import write_whole
+    from restitution.impacts import find_impacts
+
+    if args.template:
+        _write_template(Path(args.template))
+        return
+    if not args.track:
+        raise InputError("name a track: a CSV file or a shipped record ('restitution data list')")
+    for name, bad in (("--frames", args.frames < 2), ("--film", not 0 < args.film < 10)):
+        if bad:
+            rule = "must be at least 2" if name == "--frames" else "must be between 0 and 10 diameters"
+            raise InputError(Defect(rule, field=name, value=str(getattr(args, name.removeprefix("--")))))
+    track, conditions, kind = _read(args)
+    found = find_impacts(
+        track, conditions, args.speed, args.stokes, Path(args.track).stem, kind, args.frames, args.film
+    )
+    table = found.table()
+    if args.out:
+        write_whole(args.out, table.to_csv(index=False, float_format="%.6g", lineterminator="\n"))
+    _show(table, found.sigma, "m" if track.quantity == "gap" else "m/s")
+    for note in found.notes:
+        show(f"note: {note}")
+
+
+def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
+    """The track, its conditions and its kind."""
+    from restitution import datasets
+    from restitution.conditions import read_conditions
+    from restitution.errors import Defect, InputError
+    from restitution.tables import read_table
+    from restitution.tracks import Track
+
+    if args.sigma is not None and not 0 < args.sigma < math.inf:
+        raise InputError(Defect("must be positive and finite", field="--sigma", value=f"{args.sigma:g}"))
+    columns = dict(args.column)
+    if not Path(args.track).exists():
+        if args.track not in datasets.names():
+            raise InputError(Defect("does not exist, and no shipped record has this name", args.track))
+        resource = datasets.resource(args.track)
+        conditions = read_conditions(args.conditions) if args.conditions else resource.conditions
+        return datasets.load_track(args.track, args.sigma), conditions, resource.kind
+    if not args.conditions:
+        raise InputError(
+            f"{args.track}: fluid and sphere are needed: --conditions FILE (--template writes an example)"
+        )
+    if columns and not args.unit:
+        raise InputError("columns named by --column have no stated unit: add --unit m or --unit mm")
+    schema = datasets.infer_schema(args.track, columns)
+    if schema.name not in ("trajectory", "settling"):
+        raise InputError(Defect(f"is a {schema.name} table, not a track of time and gap or velocity", args.track))
+    length = 1e-3 if args.unit == "mm" else 1.0
+    time = 1e-3 if args.time_unit == "ms" else 1.0
+    value = schema.columns[1]
+    scale = {"time_s": time, value: length / (time if value == "velocity_m_s" else 1.0)}
+    sigma = None if args.sigma is None else args.sigma * scale[value]
+    track = Track.from_table(read_table(args.track, schema, columns, scale), sigma)
+    return track, read_conditions(args.conditions), "measured"
+
+
+def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
+    """Print the impacts, one line each."""
+    if table.empty:
+        show(f"no impact is resolved (noise {sigma:.2g} {unit})")
+        return
+
+    def with_error(value: float, error: float, digits: int) -> str:
+        return "" if math.isnan(value) else f"{value:.{digits}f} +- {error:.{digits}f}"
+
+    rows = []
+    for r in table.itertuples():
+        resolved = r.outcome == "rebound"
+        v_in = with_error(r.impact_speed_m_s, r.impact_speed_sigma_m_s, 4)
+        v_out = with_error(r.rebound_speed_m_s, r.rebound_speed_sigma_m_s, 4)
+        e = with_error(r.e_eff, r.e_eff_sigma, 3) if resolved else f"< {r.e_eff_upper:.3f}"
+        St = with_error(r.stokes, r.stokes_sigma, 1)
+        rows.append((str(r.impact), f"{r.time_s:.5g}", v_in, v_out, St, e, r.note))
+    first = table.iloc[0]
+    show(f"speed: {first.speed_definition}, Stokes number: {first.stokes_convention}, noise: {sigma:.2g} {unit}")
+    headings = ("impact", "time_s", "impact speed m/s", "rebound speed m/s", "St", "e_eff", "note")
+    show_rows(headings, rows, right=("impact",))
+
+
+def _write_template(folder: Path) -> None:
+    from restitution import datasets
+    from restitution.files import write_folder
+
+    track = datasets.load("gondret2002_st152").iloc[:45].to_csv(index=False, lineterminator="\n")
+    write_folder(folder, {"track.csv": track, "conditions.toml": _CONDITIONS})
+    show(f"{folder / 'track.csv'}: a track, the first bounce of Gondret et al. 2002")
+    show(f"{folder / 'conditions.toml'}: its conditions")
+    show(f"next: restitution impacts {folder / 'track.csv'} --conditions {folder / 'conditions.toml'}")
+
+
+_CONDITIONS = """\
+# Conditions of an experiment, in SI units. Keys without a value in the comments are needed.
+source = "Gondret, Lance & Petit, Phys. Fluids 14, 643 (2002)"  # where the data come from (may be left out)
+gravity = 9.81            # m/s2 (may be left out: 9.81)
+
+[fluid]
+density = 935.0           # kg/m3
+viscosity = 0.010         # dynamic, Pa s
+
+[sphere]
+diameter = 3.0e-3         # m
+density = 7800.0          # kg/m3
+e_dry = 0.97              # restitution of the dry impact
+roughness = 1.5e-7        # m (may be left out)
+
+# [wall]                  # may be left out
+# roughness = 1.0e-7      # m
+
+# [impact]                # only for a record that begins after its first impact
+# speed = 0.585           # m/s, towards the wall
+# speed_sigma = 0.005     # m/s
+# speed_definition = "far"
+"""

@@ -154,7 +154,7 @@ class Law:
         names = {sympy.Symbol(s, positive=True): self._latex_name(s) for s in self._symbols}
         # exp(x) would be typeset as a power of e, which here is a restitution.
         shown = self.expression().replace(sympy.exp, sympy.Function(r"\exp"))
-        return f"{self.symbol} = {sympy.latex(shown, symbol_names=names, order='none')}"
+        return f"{self.symbol} = {sympy.latex(shown, symbol_names=names, order='none', ln_notation=True)}"
 
     def _latex_name(self, symbol: str) -> str:
         return latex_name(symbol)

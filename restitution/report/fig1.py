@@ -1,0 +1,109 @@
+"""Figure 1: e_eff / e_dry against the Stokes number, measured impacts and laws; what the report is made of.
+
+The impacts come from the shipped trajectories through :mod:`restitution.impacts`. The figure takes the speeds
+extrapolated to contact: of the shipped records none resolves the film (0.1 d is crossed within a frame or two),
+so this agrees with the speed outside the film and keeps the weak bounces, which that definition loses. All
+three definitions are tabulated, since the choice moves e_eff by up to 0.2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from restitution import comparison, datasets, laws
+from restitution.files import write_folder
+from restitution.impacts import find_impacts
+from restitution.stokes import Speed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from restitution.conditions import Conditions
+
+SPEED = Speed.CONTACT
+SIMULATED_BY_ABSTRACT = "gondret2002_st152"
+"""The record whose bounces the simulation of the source abstract used ("solid squares" of its Fig. 1)."""
+EQ4_READINGS = ("eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative")
+LITERATURE = ("legendre_2005", "two_way_lubrication", "barnocky_davis_1988", "bertin_2024", "ehd_composite")
+
+
+@dataclass(frozen=True)
+class Fig1:
+    """The tables behind the figure. ``every`` has the impacts under all three definitions of speed."""
+
+    impacts: pd.DataFrame
+    every: pd.DataFrame
+    scores: pd.DataFrame
+    conditions: dict[str, Conditions]
+    notes: list[str]
+
+    @property
+    def measured(self) -> pd.DataFrame:
+        return self.impacts[self.impacts.kind == "measured"]
+
+
+def gather(speed: Speed = SPEED) -> Fig1:
+    """Impacts of all shipped trajectories that have any, and the scores of the laws against the measured ones."""
+    import pandas as pd
+
+    resources = [r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory"]
+    resources = [r for r in resources if r.conditions.sphere.e_dry is not None]
+    conditions = {r.name: r.conditions for r in resources}
+    tables, notes, scores = [], [], []
+    for definition in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+        rows = []
+        for r in resources:
+            found = find_impacts(datasets.load_track(r.name), r.conditions, definition, "st", r.name, r.kind)
+            rows.append(found.table().assign(**_provenance(r)))
+            if definition == speed:
+                notes += [f"{r.name}: {note}" for note in found.notes]
+        # Several tables may have an all-empty column, which pandas would otherwise guess a type for.
+        tables.append(
+            pd.concat([t.astype(object) for t in rows], ignore_index=True).convert_dtypes(convert_integer=False)
+        )
+        measured = tables[-1][tables[-1].kind == "measured"]
+        known = [laws.get(name) for name in (*EQ4_READINGS, *LITERATURE)]
+        table = comparison.score(
+            known, measured, conditions, measured.record.str.replace(r"_drop\d", "", regex=True)
+        )
+        scores.append(table.assign(speed_definition=str(definition)))
+    every = pd.concat(tables, ignore_index=True)
+    impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
+    return Fig1(impacts, every, pd.concat(scores, ignore_index=True), conditions, notes)
+
+
+def _provenance(r: datasets.Resource) -> dict[str, object]:
+    return {
+        "used_in_simulation": r.name == SIMULATED_BY_ABSTRACT,
+        "experiment": r.experiment.cite,
+        "doi": r.experiment.doi,
+        "figure": r.experiment.figure,
+        "digitised_by": r.digitised_by,
+        "data": r.path,
+        "sha256": r.hash.removeprefix("sha256:"),
+    }
+
+
+def write(folder: str | Path, speed: Speed = SPEED) -> list[str]:
+    """Write the report into ``folder``; returns the names of the files. The same input gives the same bytes."""
+    from restitution.report import fig1_page, fig1_plot
+
+    fig1 = gather(speed)
+    drawing = fig1_plot.draw(fig1, speed)
+    files = {
+        "figure.svg": drawing.svg,
+        "figure.png": drawing.png,
+        "impacts.csv": _csv(fig1.impacts),
+        "impacts_by_speed.csv": _csv(fig1.every),
+        "laws.csv": _csv(fig1.scores),
+        "index.html": fig1_page.render(fig1, speed, drawing.svg),
+    }
+    write_folder(folder, files)
+    return list(files)
+
+
+def _csv(table: pd.DataFrame) -> str:
+    # Five digits: the sixth may depend on the machine's arithmetic.
+    return table.to_csv(index=False, float_format="%.5g", lineterminator="\n")

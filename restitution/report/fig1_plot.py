@@ -1,0 +1,114 @@
+"""The drawing of Figure 1: two panels with the same impacts, readings of Eq. (4) left, published laws right."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from restitution import laws
+from restitution.report.drawing import Drawing, save, style
+from restitution.stokes import Speed, StokesNumber
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from restitution.report.fig1 import Fig1
+
+St_MIN, St_MAX = 4.0, 2000.0
+E_DRY = 0.97
+
+# label, colour, line style: told apart by the dashes alone.
+LINES = {
+    "eq4_exponential": (r"$e\,\exp[-18(1+e)/St]$", "#000000", "-"),
+    "eq4_exponential_over_e": (r"$e\,\exp[-18(1+e)/(e\,St)]$", "#0072B2", (0, (1, 1.2))),
+    "eq4_rational": (r"$e/[1+18(1+e)/St]$", "#D55E00", (0, (6, 2))),
+    "eq4_linear": (r"$e-18(1+e)/St$ (rejected)", "#777777", (0, (3, 1.5, 1, 1.5))),
+    "eq4_linear_relative": (r"$e[1-18(1+e)/St]$ (rejected)", "#777777", (0, (1, 3))),
+    "legendre_2005": ("Legendre et al. 2005", "#000000", "-"),
+    "two_way_lubrication": (r"two-way lubrication, $h_{min}=10^{-4}r$", "#0072B2", (0, (6, 2))),
+    "barnocky_davis_1988": (r"Barnocky & Davis, $St_c=10$", "#D55E00", (0, (3, 1.5, 1, 1.5))),
+    "bertin_2024": ("elastohydrodynamic, smooth sphere", "#009E73", (0, (1, 1.2))),
+    "ehd_composite": ("elastohydrodynamic composite", "#009E73", (0, (8, 2, 1, 2, 1, 2))),
+}
+# label, marker, face; the edge is black
+SERIES = {
+    "gondret2002_st152": ("Gondret et al. 2002, 3 mm (used in the simulation)", "s", "black"),
+    "gondret2002_st27": ("Gondret et al. 2002, 6 mm", "o", "white"),
+    "li2012": ("Li et al. 2012, five drops", "^", "white"),
+    "biegert2017": ("Biegert et al. 2017, simulation", "D", "#cccccc"),
+}
+
+
+def draw(fig1: Fig1, speed: Speed) -> Drawing:
+    """Both panels as SVG and PNG."""
+    from matplotlib.figure import Figure
+
+    from restitution.report import fig1 as content
+
+    with style():
+        figure = Figure(figsize=(11.0, 5.6), layout="constrained")
+        left, right = figure.subplots(1, 2, sharey=True)
+        for ax, title, names in (
+            (left, "(a) Readings of Eq. (4) of the source abstract", content.EQ4_READINGS),
+            (right, "(b) Published laws", content.LITERATURE),
+        ):
+            _known_without_points(ax)
+            _lines(ax, names, fig1)
+            _points(ax, fig1)
+            ax.set_title(title, loc="left", fontsize=11)
+            ax.set_xscale("log")
+            ax.set_xlim(St_MIN, St_MAX)
+            ax.set_ylim(0, 1.06)
+            ax.set_xlabel(r"Stokes number at impact  $St=\rho_p v d/(9\mu)$  [-]")
+            handles = [h for h in ax.get_lines() if h.get_label() in {LINES[n][0] for n in names}]
+            ax.legend(handles=handles, loc="lower right", fontsize=8.5, handlelength=3.6)
+        left.set_ylabel(r"effective restitution  $e_{\mathrm{eff}}/e_{\mathrm{dry}}$  [-]")
+        points = [_key(name) for name in SERIES]
+        figure.legend(handles=points, loc="outside lower center", ncols=4, fontsize=8.5)
+        return save(figure)
+
+
+def _known_without_points(ax: Axes) -> None:
+    """Joseph et al. 2001, abstract: no rebound below St of about 10, the dry value above about 500."""
+    for low, high, text in ((St_MIN, 10, "no rebound"), (500, St_MAX, "dry value")):
+        ax.axvspan(low, high, color="#e9e9e9", lw=0, zorder=0)
+        words = f"{text}\n(Joseph et al.\n2001)"
+        ax.text(np.sqrt(low * high), 0.66, words, ha="center", va="center", fontsize=7.5, color="#333333")
+
+
+def _lines(ax: Axes, names: tuple[str, ...], fig1: Fig1) -> None:
+    """The laws over the axis, at e_dry = 0.97, in St; those of another convention for the 3 mm sphere."""
+    from restitution.report.fig1 import SIMULATED_BY_ABSTRACT
+
+    St = np.geomspace(St_MIN, St_MAX, 600)
+    conditions = fig1.conditions[SIMULATED_BY_ABSTRACT]
+    for name in names:
+        law = laws.get(name)
+        label, colour, dashes = LINES[name]
+        e = law(StokesNumber(St, "st", law.speed), E_DRY, conditions, out_of_range="ignore")
+        ax.plot(St, e / E_DRY, color=colour, ls=dashes, label=label, zorder=2)
+
+
+def _points(ax: Axes, fig1: Fig1) -> None:
+    for name in SERIES:
+        _, marker, face = SERIES[name]
+        rows = fig1.impacts[fig1.impacts.record.str.startswith(name)]
+        rebound, limit = rows[rows.outcome == "rebound"], rows[rows.e_eff_upper < rows.e_dry]
+        ax.errorbar(
+            rebound.stokes.astype(float), (rebound.e_eff / rebound.e_dry).astype(float),
+            xerr=rebound.stokes_sigma.astype(float), yerr=(rebound.e_eff_sigma / rebound.e_dry).astype(float),
+            fmt=marker, ms=6, mfc=face, mec="black", mew=1.0, ecolor="black", elinewidth=0.8, capsize=2, zorder=4,
+        )  # fmt: skip
+        upper = (limit.e_eff_upper / limit.e_dry).astype(float)
+        ax.errorbar(
+            limit.stokes.astype(float), upper, xerr=limit.stokes_sigma.astype(float), yerr=0.06, uplims=True,
+            fmt=marker, ms=4, mfc=face, mec="black", color="black", elinewidth=0.8, zorder=3,
+        )  # fmt: skip
+
+
+def _key(name: str):
+    from matplotlib.lines import Line2D
+
+    label, marker, face = SERIES[name]
+    return Line2D([], [], ls="none", marker=marker, ms=6, mfc=face, mec="black", label=label)

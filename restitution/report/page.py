@@ -1,0 +1,33 @@
+"""A report as one self-contained page: nothing is loaded, everything is in the file."""
+
+from __future__ import annotations
+
+import base64
+from importlib import metadata
+from typing import Any
+
+LIBRARIES = ("restitution", "numpy", "scipy", "pandas", "sympy", "matplotlib")
+
+
+def render(template: str, **content: Any) -> str:
+    """Fill a template of this package; ``versions``, ``svg_image`` and ``equation`` are known to all of them."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    from restitution.report.drawing import equation
+
+    environment = Environment(
+        loader=PackageLoader("restitution.report", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    versions = {name: metadata.version(name) for name in LIBRARIES}
+    known = {"versions": versions, "svg_image": _svg_image, "equation": lambda latex: _svg_image(equation(latex))}
+    return environment.get_template(template).render(**known, **content)
+
+
+def _svg_image(svg: str) -> str:
+    """The address of an image that is in the page itself; as an image its ids cannot clash with another's."""
+    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
