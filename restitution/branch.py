@@ -25,6 +25,8 @@ from restitution.conditions import Conditions
 
 ORDERS = (1, 2, 3, 4, 5)
 _COEFFICIENTS = max(ORDERS) + 1
+MOST_FRAMES = 64
+"""Frames used at most: in a longer branch the penalty for leaving frames out would outweigh what is near."""
 _MOST_WINDOWS = 24
 
 
@@ -57,9 +59,10 @@ def average(tau: NDArray, value: NDArray, sigma: float, quantity: str, prior: ND
     """Fit all windows and orders to the frames of a branch, nearest to the contact first.
 
     ``value`` is a gap in m or a velocity in m/s; of a velocity the gap polynomial without its constant is
-    fitted. At least two frames are needed. Where no fit with four or more degrees of freedom has chi^2 below
-    them, the noise is scaled up until the best one has (as the Particle Data Group scales errors).
+    fitted. At least two frames are needed. Where no fit with four or more degrees of freedom comes within twice
+    the noise, the noise is scaled up to that of the best one (as the Particle Data Group scales errors).
     """
+    tau, value = tau[:MOST_FRAMES], value[:MOST_FRAMES]
     N, first = len(tau), _first(quantity)
     coefficients, roots, misfit, unknowns, windows = [], [], [], [], []
     for p in ORDERS:
@@ -75,7 +78,7 @@ def average(tau: NDArray, value: NDArray, sigma: float, quantity: str, prior: ND
     free = windows - unknowns
     tested = free >= 4
     scale = np.min(misfit[tested] / free[tested], initial=np.inf)
-    if 1 < scale < np.inf:  # no polynomial describes the frames within the noise: it is larger than stated
+    if 4 < scale < np.inf:  # no polynomial describes the frames within twice the noise: it is larger
         return average(tau, value, sigma * np.sqrt(scale) * (1 + 1e-6), quantity, prior)
     aic = misfit + 2 * unknowns + 2 * (N - windows)
     weights = np.exp(-0.5 * (aic - aic.min()))

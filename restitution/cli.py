@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from restitution import __version__
 from restitution.commands import data, impacts, laws, report
-from restitution.errors import InputError
+from restitution.errors import InputError, OutOfRangeWarning
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -25,14 +25,16 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _one_line_warning(message, category, filename, lineno, line=None) -> str:
-    return f"warning: {message}\n"
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status: 0, or 2 for input that cannot be used."""
     args = build_parser().parse_args(argv)
-    warnings.formatwarning = _one_line_warning
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", OutOfRangeWarning)
+        warnings.showwarning = _show_warning
+        return _run(args)
+
+
+def _run(args: argparse.Namespace) -> int:
     try:
         return args.run(args) or 0
     except InputError as error:
@@ -45,3 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)  # noqa: T201
         return 130
+
+
+def _show_warning(message: Warning | str, *_: object) -> None:
+    print(f"warning: {message}", file=sys.stderr)  # noqa: T201

@@ -12,7 +12,7 @@ The definitions differ in the frames that the branches are fitted to:
 - ``window``: the straight line through the n nearest frames on each side (default 2), no extrapolation.
 
 Uncertainties come from draws of the averaged fits, so they follow from the position noise and from the choice
-of window. On synthetic flights the 68 % intervals of e_eff cover 65-77 %; what remains is a bias of about half
+of window. On synthetic flights the 68 % intervals of e_eff cover 65-76 %; what remains is a bias of about half
 a standard deviation towards too fast approaches and too slow rebounds, that of any smooth fit at its end.
 Errors of d, density and viscosity are not in them.
 """

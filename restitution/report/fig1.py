@@ -51,24 +51,22 @@ def gather(speed: Speed = SPEED) -> Fig1:
     resources = [r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory"]
     resources = [r for r in resources if r.conditions.sphere.e_dry is not None]
     conditions = {r.name: r.conditions for r in resources}
-    tables, notes, scores = [], [], []
+    known = [laws.get(name) for name in (*EQ4_READINGS, *LITERATURE)]
+    tables, scores, notes = [], [], []
     for definition in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
-        rows = []
+        rows: list[dict] = []
         for r in resources:
             found = find_impacts(datasets.load_track(r.name), r.conditions, definition, "st", r.name, r.kind)
-            rows.append(found.table().assign(**_provenance(r)))
+            rows += [row | _provenance(r) for row in found.rows]
             if definition == speed:
                 notes += [f"{r.name}: {note}" for note in found.notes]
-        # Several tables may have an all-empty column, which pandas would otherwise guess a type for.
-        tables.append(
-            pd.concat([t.astype(object) for t in rows], ignore_index=True).convert_dtypes(convert_integer=False)
-        )
+        columns = [*datasets.schema("impact").columns, *_provenance(resources[0])]
+        tables.append(pd.DataFrame(rows, columns=columns))
         measured = tables[-1][tables[-1].kind == "measured"]
-        known = [laws.get(name) for name in (*EQ4_READINGS, *LITERATURE)]
-        table = comparison.score(
-            known, measured, conditions, measured.record.str.replace(r"_drop\d", "", regex=True)
+        laboratory = measured.record.str.replace(r"_drop\d", "", regex=True)
+        scores.append(
+            comparison.score(known, measured, conditions, laboratory).assign(speed_definition=str(definition))
         )
-        scores.append(table.assign(speed_definition=str(definition)))
     every = pd.concat(tables, ignore_index=True)
     impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
     return Fig1(impacts, every, pd.concat(scores, ignore_index=True), conditions, notes)

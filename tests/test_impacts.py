@@ -1,0 +1,165 @@
+"""Impacts from tracks: the reference record, known truth with noise and gaps, and what the sampling hides."""
+
+import numpy as np
+import pytest
+from flights import STEEL_IN_OIL, as_track, film, fly, random_track
+
+from restitution import datasets
+from restitution.conditions import Conditions
+from restitution.errors import InputError
+from restitution.impacts import find_impacts
+from restitution.tables import check_table
+from restitution.tracks import noise
+
+
+def shipped(name, speed, **options):
+    conditions = datasets.resource(name).conditions
+    return find_impacts(datasets.load_track(name), conditions, speed, record=name, **options)
+
+
+def test_first_impact_of_the_reference_record_is_as_quoted():
+    first = shipped("gondret2002_st152", "far").table().iloc[0]
+    assert first.impact_speed_m_s == pytest.approx(0.585, abs=0.01)
+    assert first.stokes == pytest.approx(152, abs=3)
+    assert abs(first.time_s) < 0.5e-3
+
+
+@pytest.mark.parametrize(
+    ("speed", "e_eff"),
+    # Slopes of two frames, and quadratic extrapolation, both by hand from the published points.
+    [("window", (0.79, 0.64, 0.48, 0.17)), ("contact", (0.85, 0.69, 0.50, 0.21))],
+)
+def test_all_bounces_of_the_reference_record(speed, e_eff):
+    table = shipped("gondret2002_st152", speed).table()
+    rebounds = table[table.outcome == "rebound"]
+    assert len(rebounds) == 4
+    np.testing.assert_allclose(rebounds.time_s, [0, 0.0840, 0.130, 0.152], atol=1e-3)
+    assert np.all(np.abs(rebounds.e_eff - np.array(e_eff)) < 2 * rebounds.e_eff_sigma)
+
+
+def test_definitions_of_speed_differ_as_they_must():
+    """The mean slope of a window lags behind the deceleration after the rebound, so it gives less."""
+    contact, window = (shipped("gondret2002_st152", s).table() for s in ("contact", "window"))
+    assert np.all(contact.e_eff.iloc[:3].to_numpy() > window.e_eff.iloc[:3].to_numpy())
+
+
+def test_the_record_without_approach_uses_the_quoted_speed():
+    first = shipped("gondret2002_st27", "contact").table().iloc[0]
+    assert first.impact_speed_m_s == pytest.approx(0.518, abs=0.001)
+    assert first.stokes == pytest.approx(27, abs=0.3)
+    assert 0.42 < first.e_eff < 0.53
+    assert first.e_eff_sigma > 0.03 * first.e_eff  # its time axis is known to 3 % only
+
+
+def test_a_record_without_approach_and_without_quoted_speed_says_so():
+    conditions = datasets.resource("gondret2002_st27").conditions.model_copy(update={"impact": None})
+    found = find_impacts(datasets.load_track("gondret2002_st27"), conditions)
+    assert not found.rows
+    assert "impact" in found.notes[0]
+
+
+@pytest.mark.parametrize(("quantity", "speed"), [("gap", "far"), ("gap", "contact"), ("velocity", "contact")])
+def test_intervals_cover_the_truth(quantity, speed):
+    """68 % intervals of e_eff over 300 noisy impacts at least, with frames missing at random."""
+    rng = np.random.default_rng(1)
+    inside, total = 0, 0
+    while total < 300:
+        track, truths = random_track(rng, quantity)
+        for row in find_impacts(track, STEEL_IN_OIL, speed).rows:
+            truth = min(truths, key=lambda t: abs(t.time_s - row["time_s"]))
+            if row["outcome"] == "rebound" and abs(truth.time_s - row["time_s"]) < 2e-3:
+                inside += abs(row["e_eff"] - truth.v_out / truth.v_in) < row["e_eff_sigma"]
+                total += 1
+    assert 0.60 <= inside / total <= 0.76
+
+
+def test_window_slope_is_that_of_the_frames_with_the_error_of_the_noise():
+    """Two frames: sigma sqrt(2)/dt, and the slope itself to the Monte Carlo error."""
+    sigma, dt = 1e-5, 1e-3
+    flights, truths = fly(8e-3, -0.4, (0.7,), 0.6)
+    times = np.arange(0, flights[-1].end, dt)
+    gap, _ = film(flights, times)
+    row = find_impacts(as_track(times, gap, sigma=sigma), STEEL_IN_OIL, "window").rows[0]
+    k = np.searchsorted(times, truths[0].time_s)
+    assert row["impact_speed_m_s"] == pytest.approx(-(gap[k - 1] - gap[k - 2]) / dt, abs=1e-3)
+    assert row["rebound_speed_m_s"] == pytest.approx((gap[k + 1] - gap[k]) / dt, abs=1e-3)
+    assert row["impact_speed_sigma_m_s"] == pytest.approx(sigma * np.sqrt(2) / dt, rel=0.1)
+
+
+def test_without_noise_the_truth_is_found():
+    flights, truths = fly(8e-3, -0.4, (0.8, 0.7), 0.6)
+    times = np.arange(0, flights[-1].end, 0.5e-3)
+    gap, _ = film(flights, times)
+    rows = find_impacts(as_track(times, gap, sigma=1e-9), STEEL_IN_OIL, "contact").rows
+    for row, truth in zip(rows, truths, strict=False):
+        assert row["impact_speed_m_s"] == pytest.approx(truth.v_in, rel=1e-3)
+        assert row["rebound_speed_m_s"] == pytest.approx(truth.v_out, rel=1e-3)
+        assert row["time_s"] == pytest.approx(truth.time_s, abs=1e-6)
+
+
+def test_far_is_not_slowed_by_a_resolved_film_but_contact_is():
+    """v(h) = v0 [1 - ln(h0/h)/St] below h0 = 0.05 d: lubrication theory, sampled finely."""
+    d, v0, St = STEEL_IN_OIL.sphere.diameter, 0.5, 40.0
+    gap, h0, h_min, dt = [4e-3], 0.05 * d, 1e-6, 2e-6
+    while gap[-1] > h_min:
+        h = gap[-1]
+        gap.append(h - dt * v0 * (1 - np.log(h0 / h) / St if h < h0 else 1))
+    down = np.array(gap[:-1])
+    record = np.concatenate([down, 0.7 * down[::-1]])[::10]  # comes back along the same path, 0.7 as fast
+    times = dt * 10 * np.arange(len(record))
+    found = {
+        s: find_impacts(as_track(times, record, sigma=1e-8), STEEL_IN_OIL, s).rows[0] for s in ("far", "contact")
+    }
+    assert found["far"]["impact_speed_m_s"] == pytest.approx(v0, rel=1e-3)
+    assert found["far"]["e_eff"] == pytest.approx(0.7, rel=1e-3)
+    assert found["contact"]["impact_speed_m_s"] < 0.95 * v0
+
+
+def test_a_bounce_below_the_film_is_said_to_be_unresolved():
+    found = shipped("gondret2002_st152", "far")
+    assert len(found.rows) == 3
+    assert any("0.3 mm" in note for note in found.notes)
+
+
+def test_no_rebound_gives_an_upper_limit():
+    flights, truths = fly(8e-3, -0.4, (), 0.6)
+    fall = np.arange(0, flights[0].end, 1e-3)
+    rest = fall[-1] + 1e-3 * np.arange(1, 20)
+    rng = np.random.default_rng(2)
+    gap = np.concatenate([film(flights, fall)[0], np.zeros(len(rest))]) + 1e-5 * rng.standard_normal(
+        len(fall) + 19
+    )
+    (row,) = find_impacts(as_track(np.concatenate([fall, rest]), gap), STEEL_IN_OIL, "contact").rows
+    assert row["outcome"] == "not_resolved"
+    assert 0 < row["e_eff_upper"] < 0.2
+    assert "e_eff" not in row
+    assert not truths
+
+
+def test_noise_is_that_of_the_record_not_of_its_bounces():
+    rng = np.random.default_rng(3)
+    estimates = []
+    for _ in range(20):
+        flights, _ = fly(8e-3, -0.4, (0.8, 0.7), 0.6)
+        times = np.arange(0, flights[-1].end, 1e-3)
+        estimates.append(noise(times, film(flights, times)[0] + 1e-5 * rng.standard_normal(len(times))))
+    assert np.mean(estimates) == pytest.approx(1e-5, rel=0.1)
+
+
+def test_stokes_number_of_the_impact_follows_the_convention():
+    st, star = (shipped("gondret2002_st152", "far", stokes=key).table() for key in ("st", "st_star"))
+    np.testing.assert_allclose(star.stokes / st.stokes, 1 + 935 / (2 * 7800), rtol=1e-12)
+
+
+def test_the_table_obeys_the_impact_schema(tmp_path):
+    path = tmp_path / "impacts.csv"
+    shipped("li2012_drop2", "contact").table().to_csv(path, index=False)
+    assert check_table(path, datasets.schema("impact")) == []
+
+
+def test_a_sphere_without_dry_restitution_is_refused():
+    bare = Conditions.model_validate(
+        {"fluid": {"density": 935, "viscosity": 0.01}, "sphere": {"diameter": 3e-3, "density": 7800}}
+    )
+    with pytest.raises(InputError, match="e_dry"):
+        find_impacts(datasets.load_track("gondret2002_st152"), bare)
