@@ -1,0 +1,33 @@
+"""The README's example runs as printed, and what it lists exists."""
+
+import re
+from pathlib import Path
+
+from restitution.cli import build_parser
+
+README = (Path(__file__).parent.parent / "README.md").read_text()
+
+
+def test_python_example_runs(capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    exec(compile(code, "README.md", "exec"), {})
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 4
+    assert all(
+        re.match(r"St +\d+\.\d: measured 0\.\d\d \+- 0\.\d\d, Legendre et al\. 0\.\d\d$", line) for line in lines
+    )
+
+
+def test_every_runtime_dependency_has_its_line():
+    import tomllib
+
+    project = tomllib.loads((Path(__file__).parent.parent / "pyproject.toml").read_text())["project"]
+    wanted = [*project["dependencies"], *project["optional-dependencies"]["dev"]]
+    table = README.split("## Dependencies")[1]
+    for requirement in wanted:
+        assert re.match(r"[a-z0-9]+", requirement)[0] in table
+
+
+def test_commands_of_the_table_are_known():
+    choices = next(a.choices for a in build_parser()._actions if a.dest == "command")
+    assert set(re.findall(r"\| `restitution (\w+)", README)) == set(choices)
