@@ -36,7 +36,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(args: argparse.Namespace) -> int:
     try:
-        return args.run(args) or 0
+        status = args.run(args) or 0
+        if sys.stdout is not None:
+            sys.stdout.flush()
+        return status
     except InputError as error:
         for defect in error.defects:
             print(f"error: {defect}", file=sys.stderr)  # noqa: T201
@@ -44,6 +47,11 @@ def _run(args: argparse.Namespace) -> int:
     except BrokenPipeError:
         sys.stderr.close()  # the reader left (`| head`): no message about flushing
         return 0
+    except OSError as error:
+        # Files are read and written with their own errors; what is left is the standard output.
+        print(f"error: the output cannot be written: {error.strerror or error}", file=sys.stderr)  # noqa: T201
+        sys.stdout = None  # nothing more to flush at exit
+        return 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)  # noqa: T201
         return 130

@@ -14,8 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from restitution.errors import Defect, InputError
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 
 
 class _Record(BaseModel):
@@ -38,7 +38,7 @@ class Sphere(_Record):
 
     diameter: Positive
     density: Positive
-    e_dry: Annotated[float, Field(gt=0, le=1)] | None = None
+    e_dry: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
     roughness: NonNegative | None = None
 
     @property
@@ -76,6 +76,20 @@ class Conditions(_Record):
     gravity: Positive = 9.81
     source: str | None = None
 
+    @property
+    def free_fall(self) -> float:
+        """Acceleration in m/s2 of a sphere set free: gravity less buoyancy, over sphere and added mass."""
+        excess = self.sphere.density - self.fluid.density
+        return self.gravity * excess / (self.sphere.density + 0.5 * self.fluid.density)
+
+
+_RULES = {
+    "missing": "is missing",
+    "extra_forbidden": "is not a known key",
+    "model_type": "must be a table of keys, as in [fluid]",
+    "float_type": "must be a number",
+}
+
 
 def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
     """Pydantic's findings as defects that name field and value."""
@@ -83,7 +97,8 @@ def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
     for e in error.errors():
         missing = e["type"] == "missing"
         value = None if missing or isinstance(e["input"], dict) else str(e["input"])
-        found.append(Defect(e["msg"], file, None, ".".join(str(p) for p in e["loc"]), value))
+        rule = _RULES.get(e["type"], e["msg"])
+        found.append(Defect(rule, file, None, ".".join(str(p) for p in e["loc"]), value))
     return found
 
 

@@ -20,6 +20,8 @@ def show(what: RenderableType) -> None:
         console.width = 10_000
     with console.capture() as capture:
         console.print(what)
+    if sys.stdout is None:  # closed by the caller (`>&-`)
+        return
     sys.stdout.write("".join(f"{line.rstrip()}\n" for line in capture.get().splitlines()))
 
 

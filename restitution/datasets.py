@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import math
+from dataclasses import replace
 from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
@@ -184,11 +185,17 @@ def load(name: str) -> pd.DataFrame:
 
 
 def load_track(name: str, sigma: float | None = None) -> Track:
-    """A trajectory or settling record as a track; noise estimated if ``sigma`` is not given."""
+    """A trajectory or settling record as a track.
+
+    Its noise, if ``sigma`` is not given, is what the frames show, but at least the stated error of digitisation.
+    """
     r = resource(name)
     if r.table not in ("trajectory", "settling"):
         raise InputError(f"{name} is a {r.table} table, not a track")
-    return Track.from_table(load(name), sigma, r.digitisation_error.speed_scale_sigma)
+    error = r.digitisation_error
+    track = Track.from_table(load(name), sigma, error.speed_scale_sigma)
+    stated = error.sigma.get("gap_m" if track.quantity == "gap" else "velocity_m_s", 0.0)
+    return track if sigma is not None or stated <= track.sigma else replace(track, sigma=stated)
 
 
 def read_package(path: str | Path | None = None) -> tuple[Path, Package]:

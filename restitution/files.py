@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -11,38 +10,51 @@ from restitution.errors import Defect, InputError
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:
-    """Write a file aside in the same folder, then rename it into place.
+    """Write one file aside in its folder, which must exist, then rename it into place; links are followed.
 
-    Raises :class:`InputError` where the place cannot be written; then nothing is changed.
+    Raises :class:`InputError` where that cannot be done; then nothing is changed.
     """
-    path = Path(path)
-    write_folder(path.parent, {path.name: content})
+    path = Path(path).resolve()
+    if path.exists() and not path.is_file():
+        raise InputError(Defect("is not a regular file", str(path)))
+    _write(path.parent, {path.name: content})
 
 
 def write_folder(folder: str | Path, contents: Mapping[str, str | bytes]) -> None:
-    """Write several files into ``folder``: all are written aside first, then renamed one after the other."""
+    """Write several files into ``folder``, made if need be: all are written aside first, then renamed in turn."""
     folder = Path(folder)
-    aside: list[tuple[Path, Path]] = []
+    missing = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        _write(folder, contents)
+    except BaseException as error:
+        for place in missing:
+            if place.is_dir() and not any(place.iterdir()):
+                place.rmdir()
+        if isinstance(error, OSError):
+            raise _defect(error, folder) from None
+        raise
+
+
+def _write(folder: Path, contents: Mapping[str, str | bytes]) -> None:
+    aside: list[tuple[Path, Path]] = []
+    try:
         for name, content in contents.items():
             target = folder / name
             if target.is_dir():
                 raise IsADirectoryError(None, "is a folder", str(target))
-            handle, temporary = tempfile.mkstemp(dir=folder, prefix=f".{name}.")
-            aside.append((Path(temporary), target))
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(content.encode() if isinstance(content, str) else content)
-            # mkstemp makes files private; outputs get the permissions any new file would.
-            umask = os.umask(0)
-            os.umask(umask)
-            Path(temporary).chmod(0o666 & ~umask)
+            temporary = folder / f".{name}.{os.getpid()}.part"
+            aside.append((temporary, target))
+            temporary.write_bytes(content.encode() if isinstance(content, str) else content)
         for temporary, target in aside:
             temporary.replace(target)
     except OSError as error:
-        raise InputError(
-            Defect(f"cannot be written: {error.strerror or error}", str(error.filename or folder))
-        ) from None
+        raise _defect(error, folder) from None
     finally:
         for temporary, _ in aside:
-            temporary.unlink(missing_ok=True)
+            if temporary.exists():
+                temporary.unlink()
+
+
+def _defect(error: OSError, folder: Path) -> InputError:
+    return InputError(Defect(f"cannot be written: {error.strerror or error}", str(error.filename or folder)))

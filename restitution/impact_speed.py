@@ -5,16 +5,17 @@ The frames of the approach and of the rebound are fitted by polynomials averaged
 the slope of a branch at t_c; where a soft contact is resolved, each branch ends where its own gap is zero.
 The definitions differ in the frames that the branches are fitted to:
 
-- ``far``: frames outside the film only, gap >= h_film = 0.1 d. It is the speed with which the motion outside the
-  film would meet the wall, neither slowed by the film nor mixed with the fall from where it was looked at.
-  0.1 d is where Kidanemariam & Uhlmann (2014) quote e_eff, after 0.10 d/v (as cited in waLBerla's source);
+- ``far``: frames at gaps above h_film = 0.1 d only, one cell at ten cells a diameter. It is the speed with which
+  the motion out there would meet the wall. What a film that begins at a larger gap h0 has taken by then, a
+  fraction of about ln(h0/h_film)/St, stays in it;
 - ``contact``: all frames. Where the sampling resolves the film this is the slowed speed at the wall;
 - ``window``: the straight line through the n nearest frames on each side (default 2), no extrapolation.
 
 Uncertainties come from draws of the averaged fits, so they follow from the position noise and from the choice
-of window. On synthetic flights the 68 % intervals of e_eff cover 65-76 %; what remains is a bias of about half
-a standard deviation towards too fast approaches and too slow rebounds, that of any smooth fit at its end.
-Errors of d, density and viscosity are not in them.
+of window. Errors of d, density and viscosity are not in them. On synthetic flights the 68 % intervals of e_eff
+cover 70 to 80 % where only gravity and drag act, and 45 to 65 % where a wake brakes the sphere after the rebound
+by up to v/sqrt(d/g), e_eff then being low by one standard deviation: what decays within a frame or two cannot be
+seen. The wake of the shipped records is about a third of that.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from restitution.branch import Branch, average, line, prior_scale
+from restitution.branch import Branch, Prior, average, line
 from restitution.conditions import Conditions
 from restitution.stokes import Speed
 from restitution.tracks import DETECTION, Contact, Track
@@ -36,12 +37,20 @@ DRAWS = 4000
 
 
 class UnresolvedError(Exception):
-    """The sampling does not resolve this contact."""
+    """The sampling does not resolve one ``branch``, approach or rebound, of a contact."""
+
+    def __init__(self, branch: str, reason: str):
+        self.branch = branch
+        super().__init__(f"{reason} the {branch}" if reason.endswith("resolve") else f"the {branch} {reason}")
 
 
 @dataclass(frozen=True)
 class Speeds:
-    """Draws of contact time, impact speed and rebound speed; without a rebound, its upper limit."""
+    """Draws of contact time, impact speed and rebound speed.
+
+    Without a resolved rebound ``v_out`` is None and ``v_out_upper`` the speed of a free flight to the greatest
+    height that was seen or would have been missed.
+    """
 
     time_s: NDArray
     v_in: NDArray
@@ -52,33 +61,40 @@ class Speeds:
 
 @dataclass(frozen=True)
 class SpeedMeasure:
-    """Measures the contacts of a track under one definition of speed; ``film_m`` serves ``far`` only."""
+    """Measures the contacts of a track under one definition of speed.
+
+    ``film_m`` serves ``far`` only; ``level`` is the gap at which the sphere touches the wall, as recorded.
+    """
 
     track: Track
     conditions: Conditions
     speed: Speed
     window_frames: int
     film_m: float
+    level: float = 0.0
 
     def __call__(self, contact: Contact, rng: np.random.Generator) -> Speeds:
         """The speeds at one contact; raises :class:`UnresolvedError` where the sampling does not give them."""
         if not contact.approach:
             return self._quoted(contact, rng)
         if not contact.rebound:
-            return self._unresolved(contact, rng)
+            return self._limited(contact, "the sphere stays at the wall", rng)
         before, after = list(contact.approach)[::-1], list(contact.rebound)
-        if self._precedes(contact.nearest, before, after, rng):
-            before.insert(0, contact.nearest)
-        else:
-            after.insert(0, contact.nearest)
-        t_c, v_in, v_out = self._meet(before, after, rng)
+        try:
+            if contact.nearest is not None:
+                side = before if self._precedes(contact.nearest, before, after, rng) else after
+                side.insert(0, contact.nearest)
+            t_c, v_in, v_out = self._meet(before, after, rng)
+            v_in, v_out = _moving(v_in, "approach"), _moving(v_out, "rebound")
+        except UnresolvedError as reason:
+            if reason.branch == "approach":
+                raise
+            return self._limited(contact, str(reason), rng)
         scale = self._scale(rng)
-        return Speeds(t_c, scale * _positive(v_in, "approach"), scale * _positive(v_out, "rebound"), None, "")
+        return Speeds(t_c, scale * v_in, scale * v_out, None, "")
 
     def _precedes(self, frame: int, before: list[int], after: list[int], rng: np.random.Generator) -> bool:
         """On which side of the contact the nearest frame lies, by the contact time of the others."""
-        if self.track.quantity == "velocity":
-            return self.track.value[frame] < 0
         t_c, *_ = self._meet(before, after, rng)
         return self.track.time_s[frame] < np.nanmedian(t_c) if np.isfinite(t_c).any() else False
 
@@ -88,10 +104,15 @@ class SpeedMeasure:
         overlap = self.track.quantity == "gap" and self._touching([*before[:2], *after[:2]]).any()
         before, after = self._usable(before, "approach"), self._usable(after, "rebound")
         origin = 0.5 * (low + high)
-        incoming, outgoing = self._fit(before, origin).draw(DRAWS, rng), self._fit(after, origin).draw(DRAWS, rng)
+        incoming, outgoing = (
+            self._fit(before, origin, False).draw(DRAWS, rng),
+            self._fit(after, origin, True).draw(DRAWS, rng),
+        )
         if self.track.quantity == "velocity":
             tau = rng.uniform(low - origin, high - origin, DRAWS)  # velocities do not say where between two frames
         elif overlap:  # a contact that lasts: each branch ends where its own gap does
+            incoming[:, 0] -= self.level
+            outgoing[:, 0] -= self.level
             tau, left = _root(incoming, np.zeros(DRAWS)), _root(outgoing, np.zeros(DRAWS))
             return origin + tau, -_slope(incoming, tau), _slope(outgoing, left)
         else:
@@ -109,38 +130,39 @@ class SpeedMeasure:
             use, gap = use[~touching], gap[~touching]
         if self.speed is Speed.FAR:
             if np.max(gap, initial=0.0) < self.film_m:
-                raise UnresolvedError(f"the {branch} stays below the film of {self.film_m * 1e3:.3g} mm")
+                raise UnresolvedError(branch, f"stays below the film of {self.film_m * 1e3:.3g} mm")
             use = use[gap >= self.film_m]
         if self.speed is Speed.WINDOW:
             use = use[: self.window_frames]
         if len(use) < (self.window_frames if self.speed is Speed.WINDOW else 2):
-            raise UnresolvedError(f"only {len(use)} frames resolve the {branch}")
+            raise UnresolvedError(branch, f"only {len(use)} frames resolve")
         return use
 
     def _touching(self, frames: NDArray | list[int]) -> NDArray:
         """Frames in the overlap of a soft contact, which belong to neither branch."""
-        return self.track.value[frames] < -3 * self.track.sigma
+        return self.track.value[frames] < self.level - 3 * self.track.sigma
 
     def _gaps(self, frames: NDArray) -> NDArray:
-        """Gaps of the frames; of a velocity track by integration away from the contact."""
+        """Gaps of the frames; of a velocity track by integration away from a contact half a frame before."""
         from scipy.integrate import cumulative_trapezoid
 
-        value = self.track.value[frames]
-        if self.track.quantity == "gap":
-            return value
-        return cumulative_trapezoid(value, self.track.time_s[frames], initial=0.0)
+        value, time = self.track.value[frames], self.track.time_s[frames]
+        if self.track.quantity == "gap" or not len(frames):
+            return value - self.level
+        first = 0.5 * abs(value[0]) * float(np.median(np.diff(self.track.time_s)))
+        return first + cumulative_trapezoid(value, time, initial=0.0)
 
-    def _fit(self, frames: NDArray, origin: float) -> Branch:
+    def _fit(self, frames: NDArray, origin: float, rebound: bool) -> Branch:
         t, y = self.track.time_s[frames], self.track.value[frames]
         if self.speed is Speed.WINDOW:
             return line(t - origin, y, self.track.sigma, self.track.quantity)
-        return average(t - origin, y, self.track.sigma, self.track.quantity, prior_scale(self.conditions))
+        return average(t - origin, y, self.track.sigma, self.track.quantity, Prior.of(self.conditions), rebound)
 
     def _alone(self, frames: list[int], branch: str, rng: np.random.Generator) -> tuple[NDArray, float]:
         """Draws of a branch whose other side is missing, and the time of its nearest frame, their origin."""
         use = self._usable(frames, branch)
         origin = float(self.track.time_s[use[0]])
-        return self._fit(use, origin).draw(DRAWS, rng), origin
+        return self._fit(use, origin, branch == "rebound").draw(DRAWS, rng), origin
 
     def _scale(self, rng: np.random.Generator) -> NDArray:
         """Draws of the factor that the track's scale error puts on its speeds; it cancels in their ratio."""
@@ -152,33 +174,35 @@ class SpeedMeasure:
         outgoing, origin = self._alone(list(contact.rebound), "rebound", rng)
         tau = _root(outgoing, np.zeros(DRAWS))
         v_in = rng.normal(quoted.speed, quoted.speed_sigma, DRAWS)
-        v_out = self._scale(rng) * _positive(_slope(outgoing, tau), "rebound")
+        v_out = self._scale(rng) * _moving(_slope(outgoing, tau), "rebound")
         note = f"impact speed ({quoted.speed_definition}) quoted by the source, not in the record"
         return Speeds(origin + tau, v_in, v_out, None, note)
 
-    def _unresolved(self, contact: Contact, rng: np.random.Generator) -> Speeds:
-        """A contact after which no flight rises above the noise: an upper limit of the rebound speed."""
+    def _limited(self, contact: Contact, reason: str, rng: np.random.Generator) -> Speeds:
+        """A contact whose rebound is not resolved: the approach, and a limit of the rebound speed."""
         incoming, origin = self._alone(list(contact.approach)[::-1], "approach", rng)
-        limit = DETECTION * self.track.sigma
-        tau, upper, unit = np.zeros(DRAWS), limit, "m/s"
+        seen = self.track.value[contact.rebound.start : contact.rebound.stop]
+        highest = np.max(seen - self.level, initial=0.0) + DETECTION * self.track.sigma
+        frame = float(np.median(np.diff(self.track.time_s)))
         if self.track.quantity == "gap":
-            incoming[:, 0] -= contact.level
-            tau, unit = _root(incoming, tau), "m"
-            c = self.conditions
-            # gravity less buoyancy, over the inertia of sphere and added mass
-            excess = abs(c.sphere.density - c.fluid.density)
-            fall = c.gravity * excess / (c.sphere.density + 0.5 * c.fluid.density)
-            frame = float(np.median(np.diff(self.track.time_s)))
-            upper = max(np.sqrt(2 * fall * limit), fall * frame)  # lower or shorter flights go unseen
-        v_in = self._scale(rng) * _positive(-_slope(incoming, tau), "approach")
-        return Speeds(origin + tau, v_in, None, upper, f"no rebound above {limit:.2g} {unit} is resolved")
+            incoming[:, 0] -= self.level
+            tau = _root(incoming, np.zeros(DRAWS))
+            fall = abs(self.conditions.free_fall)
+            highest = max(np.sqrt(2 * fall * highest), fall * frame)  # shorter flights go unseen as well
+        else:
+            tau = np.full(DRAWS, self.track.time_s[contact.approach[-1]] + 0.5 * frame - origin)
+        v_in = self._scale(rng) * _moving(-_slope(incoming, tau), "approach")
+        return Speeds(origin + tau, v_in, None, float(highest), f"rebound not resolved: {reason}")
 
 
-def _positive(speed: NDArray, branch: str) -> NDArray:
-    """The draws in which the sphere moves as it was seen to: towards the wall before, away from it after."""
-    moves = speed > 0  # also drops draws whose branches do not meet
-    if np.mean(moves) < 0.5:
-        raise UnresolvedError(f"the speed of the {branch} cannot be told from zero")
+def _moving(speed: NDArray, branch: str) -> NDArray:
+    """The draws in which the sphere moves as it was seen to: towards the wall before, away from it after.
+
+    Draws whose branches do not meet are left out too; if both are more than a tenth, the speed is not resolved.
+    """
+    moves = speed > 0
+    if np.mean(moves) < 0.9:
+        raise UnresolvedError(branch, "has a speed that cannot be told from zero")
     return np.where(moves, speed, np.nan)
 
 

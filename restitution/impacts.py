@@ -18,7 +18,7 @@ from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.impact_speed import H_FILM, SpeedMeasure, Speeds, UnresolvedError
 from restitution.stokes import Speed, convention
-from restitution.tracks import DETECTION, Contact, Track, contacts
+from restitution.tracks import DETECTION, Contact, Contacts, Track, contacts
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,34 +60,57 @@ def find_impacts(
     """
     if conditions.sphere.e_dry is None:
         raise InputError(Defect("must be stated: impacts are compared by e_eff / e_dry", field="sphere.e_dry"))
-    measure = SpeedMeasure(track, conditions, Speed(speed), window_frames, h_film * conditions.sphere.diameter)
-    rows, notes = [], []
-    for i, contact in enumerate(_with_quoted_first(track, conditions, notes)):
-        number = len(rows) + 1
+    if not np.isfinite(track.sigma):
+        raise InputError("the numbers of the track are too large to compute with: wrong unit?")
+    found = contacts(track)
+    level = found.level or 0.0
+    measure = SpeedMeasure(
+        track, conditions, Speed(speed), window_frames, h_film * conditions.sphere.diameter, level
+    )
+    rows, notes = [], _remarks(track, conditions, found)
+    for i, contact in enumerate(_with_quoted_first(track, conditions, found, notes)):
         try:
-            found = measure(contact, np.random.default_rng([seed, i]))
+            speeds = measure(contact, np.random.default_rng([seed, i]))
         except UnresolvedError as reason:
-            time = track.time_s[contact.nearest if contact.nearest is not None else contact.approach[-1]]
-            notes.append(f"contact near t = {time:.4g} s: {reason}")
+            frame = contact.approach[-1] if contact.approach else contact.rebound[0]
+            notes.append(f"impact {i + 1}, near t = {track.time_s[frame]:.4g} s: {reason}")
             continue
-        rows.append({"record": record, "impact": number, "kind": kind} | _row(found, conditions, speed, stokes))
+        rows.append({"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, stokes))
     return Impacts(rows, track.sigma, notes)
 
 
-def _with_quoted_first(track: Track, conditions: Conditions, notes: list[str]) -> list[Contact]:
+def _remarks(track: Track, conditions: Conditions, found: Contacts) -> list[str]:
+    """What about a track makes one doubt its unit or its zero."""
+    d, remarks = conditions.sphere.diameter, []
+    if track.quantity == "gap" and np.min(track.value) > 0.2 * d:
+        remarks.append(
+            f"the gap never falls below {np.min(track.value):.3g} m, {np.min(track.value) / d:.2g} d: "
+            "is it the height of the centre? It must be that of the lowest point"
+        )
+    fastest = np.max(np.abs(np.diff(track.value) / np.diff(track.time_s)), initial=0.0)
+    if track.quantity == "gap" and not 1e-3 < fastest < 30:
+        remarks.append(f"the greatest speed in the track is {fastest:.2g} m/s: are the units right?")
+    if found.level is not None and abs(found.level) > DETECTION * track.sigma:
+        remarks.append(f"the sphere rests at a gap of {found.level:.3g} m: gaps are counted from there")
+    return remarks
+
+
+def _with_quoted_first(track: Track, conditions: Conditions, found: Contacts, notes: list[str]) -> list[Contact]:
     """The contacts, preceded by the one before the first frame if the record begins on a rebound."""
-    found = contacts(track)
-    end = found[0].approach.stop if found else len(track.time_s)
-    flight = track.value[:end]
+    end = found.contacts[0].approach.stop if found.contacts else len(track.time_s)
+    flight, limit = track.value[:end], DETECTION * track.sigma
     if track.quantity == "gap":
-        rising = end >= 3 and np.max(flight) - flight[0] > DETECTION * track.sigma
+        # rising at once, not lifted some time after the record begins
+        rising = end >= 3 and flight[2] - flight[0] > limit / 2 and np.max(flight) - flight[0] > limit
     else:
-        rising = end >= 3 and flight[0] > DETECTION * track.sigma
+        rising = end >= 3 and flight[0] > limit
     if rising and conditions.impact is not None:
-        return [Contact(range(0), None, range(end)), *found]
+        return [Contact(range(0), None, range(end)), *found.contacts]
     if rising:
         notes.append("the record begins on a rebound; give [impact] speed in the conditions to use it")
-    return found
+    elif conditions.impact is not None:
+        notes.append("[impact] in the conditions is not used: the record does not begin on a rebound")
+    return found.contacts
 
 
 def _row(found: Speeds, conditions: Conditions, speed: Speed | str, stokes: str) -> dict:
@@ -106,10 +129,20 @@ def _row(found: Speeds, conditions: Conditions, speed: Speed | str, stokes: str)
         "note": found.note,
     }
     if found.v_out is None:
-        return row | {"e_eff_upper": min(1.0, found.v_out_upper / v_in)}
+        slowest = np.nanquantile(found.v_in, 0.15866)
+        return row | {"e_eff_upper": min(1.0, found.v_out_upper / slowest)}
+    e = found.v_out / found.v_in
     row["rebound_speed_m_s"], row["rebound_speed_sigma_m_s"] = _summary(found.v_out)
-    row["e_eff"], row["e_eff_sigma"] = _summary(found.v_out / found.v_in)
+    row["e_eff"], row["e_eff_sigma"] = _summary(e)
+    row["e_stokes_correlation"] = _correlation(e, found.v_in)
     return row
+
+
+def _correlation(a: NDArray, b: NDArray) -> float:
+    """Correlation of two quantities over the central 95 % of their draws; 0 where one does not vary."""
+    (low_a, high_a), (low_b, high_b) = np.nanquantile(a, (0.025, 0.975)), np.nanquantile(b, (0.025, 0.975))
+    central = (a > low_a) & (a < high_a) & (b > low_b) & (b < high_b)
+    return float(np.corrcoef(a[central], b[central])[0, 1]) if central.any() else 0.0
 
 
 def _summary(draws: NDArray) -> tuple[float, float]:

@@ -39,13 +39,15 @@ class Speed(StrEnum):
     """
 
     FAR = "far"
-    """Outside the film: at a gap of 0.1 d, before the film slows the sphere and after it has left the film."""
+    """Of the motion outside the film, at gaps above 0.1 d, carried to the wall."""
     CONTACT = "contact"
     """The motion extrapolated to the instant of contact."""
     WINDOW = "window"
     """The mean slope of the track over a stated number of frames next to the contact."""
+    FILM_EDGE = "film_edge"
+    """At the edge of the elastohydrodynamic film, the gap D*: not seen by a camera, meant by theory."""
     UNSTATED = "unstated"
-    """The source does not say which; accepts any."""
+    """Of a law: its source does not say which, any is taken. Of a number: nobody said."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +135,7 @@ class StokesNumber:
 
     value: float | np.ndarray
     convention: str = "st"
-    speed: Speed = Speed.FAR
+    speed: Speed = Speed.UNSTATED
 
     def __post_init__(self) -> None:
         convention(self.convention)
@@ -141,7 +143,7 @@ class StokesNumber:
 
     @classmethod
     def from_speed(
-        cls, v: float | np.ndarray, conditions: Conditions, key: str = "st", speed: Speed = Speed.FAR
+        cls, v: float | np.ndarray, conditions: Conditions, key: str = "st", speed: Speed = Speed.UNSTATED
     ) -> StokesNumber:
         """St of impact speed ``v`` (m/s, positive towards the wall) under ``conditions``."""
         return cls(np.asarray(v, float)[()] * convention(key).per_speed(conditions), key, speed)

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MINIMUM_FRAMES = 4
+GRAVITY = 9.81
+"""For the time scale of flights too low to be seen; buoyancy only makes them longer."""
 DETECTION = 5.0
 """A bounce is resolved if its flight rises above both contacts by this many times the noise."""
 
@@ -52,21 +54,29 @@ class Track:
 class Contact:
     """Frames around one contact, as index ranges into the track.
 
-    ``approach`` and ``rebound`` exclude ``nearest``, the frame whose side is open. ``rebound`` is empty for a
-    last contact after which no flight is resolved; then ``level`` is the gap (or velocity) at rest.
+    ``nearest`` is a frame whose side is open; neither range has it. ``approach`` is empty where the record
+    begins after the contact, ``rebound`` where the sphere stays at the wall.
     """
 
     approach: range
     nearest: int | None
     rebound: range
-    level: float = 0.0
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """All contacts of a track in order of time; ``level`` is the gap at which the sphere comes to rest, if any."""
+
+    contacts: list[Contact]
+    level: float | None
 
 
 def noise(time: NDArray, value: NDArray) -> float:
     """Standard deviation of the noise: what four neighbouring frames leave of a parabola, by the median.
 
     Of each four frames the third divided difference is free of any parabola; scaled to unit weight its
-    standard deviation is that of one frame. The median over all fours ignores those across a contact.
+    standard deviation is that of one frame. The median over all fours ignores those across a contact. Positions
+    on a pixel grid have at least the noise of that grid, its step over sqrt(12).
     """
     t = np.lib.stride_tricks.sliding_window_view(time, 4)
     y = np.lib.stride_tricks.sliding_window_view(value, 4)
@@ -75,48 +85,65 @@ def noise(time: NDArray, value: NDArray) -> float:
     weight = 1.0 / distance.prod(axis=2)
     weight /= np.linalg.norm(weight, axis=1, keepdims=True)
     sigma = np.median(np.abs((weight * y).sum(axis=1))) / 0.6745
-    return float(max(sigma, 1e-6 * np.ptp(value)))  # noise-free records keep a finite weight
+    span = np.ptp(value)
+    levels = np.unique(np.round(value / span, 9)) * span if span > 0 else np.zeros(1)
+    grid = np.min(np.diff(levels), initial=np.inf) / np.sqrt(12) if len(levels) > 1 else 0.0
+    return float(max(sigma, grid, 1e-6 * span))  # noise-free records keep a finite weight
 
 
-def contacts(track: Track) -> list[Contact]:
-    """All contacts of the track in order of time, the last one also where no rebound is resolved."""
-    nearest = _minima(track) if track.quantity == "gap" else _reversals(track)
-    n = len(track.time_s)
-    ends = [*nearest, _rest(track, nearest[-1] + 1 if nearest else 0)]
-    found = []
-    start = 0
-    for i, end in zip(nearest, ends[1:], strict=True):
-        found.append(Contact(range(start, i), i, range(i + 1, n if end is None else end)))
-        start = i + 1
-    rest = ends[-1]
-    if rest is not None and rest - start >= 2:
-        found.append(Contact(range(start, rest), None, range(0), float(np.median(track.value[rest:]))))
-    return found
+def contacts(track: Track) -> Contacts:
+    """All contacts of the track, the last one also where the sphere then stays at the wall."""
+    rest, level = _rest(track)
+    turns = _minima(track) if track.quantity == "gap" else _reversals(track)
+    turns = [turn for turn in turns if turn[2] < rest]
+    begins = [0, *(first for _, _, first in turns)]
+    ends = [*(last for last, _, _ in turns[1:]), rest]
+    found = [
+        Contact(range(begin, last), nearest, range(first, end))
+        for begin, (last, nearest, first), end in zip(begins, turns, ends, strict=False)
+    ]
+    if level is not None:
+        found.append(Contact(range(begins[-1], rest), None, range(0)))
+    return Contacts(found, level)
 
 
-def _minima(track: Track) -> list[int]:
+def _minima(track: Track) -> list[tuple[int, int | None, int]]:
+    """Contacts of a gap track: end of the approach, nearest frame, begin of the rebound."""
     from scipy.signal import find_peaks
 
-    return [int(i) for i in find_peaks(-track.value, prominence=DETECTION * track.sigma)[0]]
+    lowest = find_peaks(-track.value, prominence=DETECTION * track.sigma)[0]
+    return [(int(i), int(i), int(i) + 1) for i in lowest]
 
 
-def _reversals(track: Track) -> list[int]:
-    """Frames at which the velocity turns from towards the wall to away from it, beyond noise."""
+def _reversals(track: Track) -> list[tuple[int, int | None, int]]:
+    """Contacts of a velocity track: from towards the wall to away from it, beyond noise, within two frames.
+
+    A frame between the two has seen both sides of the contact and belongs to neither.
+    """
     sign = np.sign(np.where(np.abs(track.value) < DETECTION * track.sigma, 0.0, track.value))
     moving = np.flatnonzero(sign)
-    turns = [k for k, j in pairwise(moving) if sign[k] < 0 < sign[j] and j - k <= 2]
-    return [int(k) + 1 for k in turns]
+    turns = [(int(k), int(j)) for k, j in pairwise(moving) if sign[k] < 0 < sign[j] and j - k <= 2]
+    return [(k + 1, None, j) for k, j in turns]
 
 
-def _rest(track: Track, start: int) -> int | None:
-    """First frame from which on the sphere lies still, or None if the record ends before that.
+def _rest(track: Track) -> tuple[int, float | None]:
+    """From which frame on the sphere lies still at the wall, and its gap there; the end and None if it does not.
 
-    Still means: at least three frames, all within the detection limit of their median, after a descent.
+    Still means: at least five frames without trend, as far from the last ones as the noise of so many frames goes,
+    for longer than a bounce too low to be seen lasts. A gap must be the lowest of the record, a velocity zero.
     """
-    value, limit = track.value, DETECTION * track.sigma
-    top = start + int(np.argmax(value[start:])) if track.quantity == "gap" else start
-    for i in range(top + 1, len(value) - 2):
-        level = np.median(value[i:])
-        if np.all(np.abs(value[i:] - level) < limit):
-            return i if abs(value[top] - level) > limit or track.quantity == "velocity" else None
-    return None
+    time, value, n = track.time_s, track.value, len(track.value)
+    level = float(np.median(value[-5:])) if track.quantity == "gap" else 0.0
+    band = (np.sqrt(2 * np.log(n)) + 2) * track.sigma
+    away = np.flatnonzero(np.abs(value - level) > band)
+    rest = int(away[-1]) + 1 if len(away) else 0
+    lowest = track.quantity == "velocity" or level < np.min(value) + 2 * band
+    if rest == 0 or n - rest < 5 or not lowest:
+        return n, None
+    t, y = time[rest:] - time[rest:].mean(), value[rest:] - level
+    limit = DETECTION * track.sigma
+    unseen = 2 * np.sqrt(2 * limit / GRAVITY) if track.quantity == "gap" else 2 * limit / GRAVITY
+    trend, error = (t @ y) / (t @ t), track.sigma / np.sqrt(t @ t)
+    if np.ptp(t) < unseen or abs(trend) > 4 * error:
+        return n, None
+    return rest, float(np.median(value[rest:])) if track.quantity == "gap" else 0.0

@@ -13,6 +13,7 @@ import pytest
 
 from restitution import comparison, datasets, laws
 from restitution.report import fig1
+from restitution.stokes import Speed
 
 ROOT = Path(__file__).parent.parent
 FILES = {"figure.svg", "figure.png", "impacts.csv", "impacts_by_speed.csv", "laws.csv", "index.html"}
@@ -54,10 +55,10 @@ def test_impacts_carry_their_provenance(report):
 
 def test_simulated_impacts_enter_no_score(report):
     scores = pd.read_csv(report / "laws.csv")
-    assert not scores.dataset.str.contains("biegert").any()
+    assert not scores.record.str.contains("biegert").any()
     impacts = pd.read_csv(report / "impacts.csv")
     measured = ((impacts.kind == "measured") & (impacts.outcome == "rebound")).sum()
-    overall = scores[(scores.dataset == "all") & (scores.speed_definition == "contact")]
+    overall = scores[(scores.record == "all") & (scores.speed_definition == "contact")]
     assert set(overall.impacts) == {measured}
 
 
@@ -65,27 +66,42 @@ def test_the_data_reject_the_linear_readings(report):
     """The sphere rebounds at St = 27, where the linear readings with K = 18 have none."""
     scores = pd.read_csv(report / "laws.csv")
     for name in ("eq4_linear", "eq4_linear_relative"):
-        rows = scores[(scores.law == name) & (scores.dataset == "gondret2002_st27")]
+        rows = scores[(scores.law == name) & (scores.record == "gondret2002_st27")]
         assert (rows["bias"] > 0.4).all()
 
 
-def test_residual_variance_against_monte_carlo():
-    """r = v_out/v_in - f(St(v_in)) with independent errors of v_in and v_out, drawn a million times."""
+@pytest.mark.parametrize("speed", ["far", "window"])
+def test_the_page_of_another_speed_says_so(speed, tmp_path):
+    fig1.write(tmp_path, Speed(speed))
+    page = (tmp_path / "index.html").read_text()
+    impacts = pd.read_csv(tmp_path / "impacts.csv")
+    assert set(impacts.speed_definition) == {speed}
+    assert f"--speed {speed}" in page
+    first = impacts.iloc[0]
+    assert f"{first.stokes:.1f} ± {first.stokes_sigma:.1f}" in page
+
+
+@pytest.mark.parametrize("correlated", [False, True])
+def test_residual_variance_against_monte_carlo(correlated):
+    """r = v_out/v_in - f(St(v_in)), v_in and v_out drawn a million times, with and without a common error."""
     law = laws.get("eq4_exponential")
     v_in, s_in, v_out, s_out, per_speed = 0.3, 0.004, 0.2, 0.003, 260.0
     rng = np.random.default_rng(5)
     a, b = rng.normal(v_in, s_in, 10**6), rng.normal(v_out, s_out, 10**6)
+    if correlated:
+        b = b + 0.8 * (a - v_in)
     drawn = b / a - 0.97 * np.exp(-18 * 1.97 / (a * per_speed))
-    e = v_out / v_in
     impacts = pd.DataFrame(
         {
             "record": ["x"],
+            "speed_definition": ["contact"],
             "stokes": [v_in * per_speed],
             "stokes_sigma": [s_in * per_speed],
             "stokes_convention": ["st"],
             "e_dry": [0.97],
-            "e_eff": [e],
-            "e_eff_sigma": [e * np.hypot(s_in / v_in, s_out / v_out)],
+            "e_eff": [v_out / v_in],
+            "e_eff_sigma": [np.std(b / a)],
+            "e_stokes_correlation": [np.corrcoef(b / a, a)[0, 1] if correlated else np.nan],
         }
     )
     residual, sigma = comparison.residuals(law, impacts, {"x": None})

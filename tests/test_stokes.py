@@ -63,6 +63,8 @@ def test_no_law_takes_another_convention_silently(name):
     if law.speed is not Speed.UNSTATED:
         with pytest.raises(ConventionError, match="speed"):
             law(own.read_as("window"), 0.97)
+        with pytest.raises(ConventionError, match="speed"):
+            law(own.read_as("unstated"), 0.97)
 
 
 def test_conditions_name_every_wrong_field(tmp_path):

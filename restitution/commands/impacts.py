@@ -24,7 +24,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="impact speed, St and e_eff of every bounce in a track",
         description="Print the impacts of a track (time and gap, or time and velocity), with uncertainties.",
     )
-    parser.add_argument("track", nargs="?", metavar="TRACK", help="a CSV file, or the name of a shipped record")
+    parser.add_argument(
+        "track",
+        nargs="?",
+        metavar="TRACK",
+        help="a CSV file of time and gap (surface to wall) or velocity (positive away from the wall, measured as "
+        "such: of positions give the gaps), or the name of a shipped record",
+    )
     parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML (see --template)")
     parser.add_argument(
         "--speed",
@@ -43,7 +49,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     options.add_columns(parser)
     parser.add_argument("--unit", choices=("m", "mm"), help="length unit of the track; needed with --column")
-    parser.add_argument("--time-unit", choices=("s", "ms"), default="s", help="time unit of the track (s)")
+    parser.add_argument("--time-unit", choices=("s", "ms"), help="time unit of the track; needed with --column")
     parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
     parser.add_argument("--template", metavar="FOLDER", help="write track.csv and conditions.toml to start from")
     parser.set_defaults(run=run)
@@ -64,6 +70,8 @@ def run(args: argparse.Namespace) -> None:
         if bad:
             rule = "must be at least 2" if name == "--frames" else "must be between 0 and 10 diameters"
             raise InputError(Defect(rule, field=name, value=str(getattr(args, name.removeprefix("--")))))
+    if args.out is not None:
+        _check_output(args)
     track, conditions, kind = _read(args)
     found = find_impacts(
         track, conditions, args.speed, args.stokes, Path(args.track).stem, kind, args.frames, args.film
@@ -74,6 +82,17 @@ def run(args: argparse.Namespace) -> None:
     _show(table, found.sigma, "m" if track.quantity == "gap" else "m/s")
     for note in found.notes:
         show(f"note: {note}")
+
+
+def _check_output(args: argparse.Namespace) -> None:
+    """Refuse an output that would replace one of the inputs, or that names no file."""
+    from restitution.errors import Defect, InputError
+
+    if not args.out:
+        raise InputError(Defect("names no file", field="--out"))
+    for given in (args.track, args.conditions):
+        if given and Path(given).exists() and Path(args.out).resolve() == Path(given).resolve():
+            raise InputError(Defect("would replace an input", args.out, None, "--out"))
 
 
 def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
@@ -97,8 +116,9 @@ def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
         raise InputError(
             f"{args.track}: fluid and sphere are needed: --conditions FILE (--template writes an example)"
         )
-    if columns and not args.unit:
-        raise InputError("columns named by --column have no stated unit: add --unit m or --unit mm")
+    for option, given, choice in (("--unit", args.unit, "m or mm"), ("--time-unit", args.time_unit, "s or ms")):
+        if columns and not given:
+            raise InputError(f"columns named by --column have no stated unit: add {option} {choice}")
     schema = datasets.infer_schema(args.track, columns)
     if schema.name not in ("trajectory", "settling"):
         raise InputError(Defect(f"is a {schema.name} table, not a track of time and gap or velocity", args.track))
@@ -136,8 +156,12 @@ def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
 
 def _write_template(folder: Path) -> None:
     from restitution import datasets
+    from restitution.errors import Defect, InputError
     from restitution.files import write_folder
 
+    for name in ("track.csv", "conditions.toml"):
+        if (folder / name).exists():
+            raise InputError(Defect("exists already; a template replaces nothing", str(folder / name)))
     track = datasets.load("gondret2002_st152").iloc[:45].to_csv(index=False, lineterminator="\n")
     write_folder(folder, {"track.csv": track, "conditions.toml": _CONDITIONS})
     show(f"{folder / 'track.csv'}: a track, the first bounce of Gondret et al. 2002")

@@ -38,6 +38,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="CONVENTION",
         help="which Stokes number St is: st, st_star, st_d, st_18, st_b (a rebound law needs this)",
     )
+    add.add_argument(
+        "--speed",
+        choices=("far", "contact", "window", "film_edge"),
+        help="which impact speed St was made with (a law that is meant for one needs this)",
+    )
     add.add_argument("--conditions", metavar="FILE", help="conditions in TOML, for converting between conventions")
     add.add_argument("--out-of-range", choices=("warn", "raise", "clip"), default="warn")
     add.set_defaults(run=run_evaluate)
@@ -105,7 +110,7 @@ def run_evaluate(args: argparse.Namespace) -> None:
     from restitution import laws
     from restitution.conditions import read_conditions
     from restitution.errors import Defect, InputError
-    from restitution.stokes import StokesNumber
+    from restitution.stokes import Speed, StokesNumber
 
     law = laws.get(args.name)
     given = dict(args.values)
@@ -120,5 +125,7 @@ def run_evaluate(args: argparse.Namespace) -> None:
     if args.stokes is None:
         raise InputError(f"say which Stokes number St is: --stokes {law.convention}, the law's own, or another")
     conditions = read_conditions(args.conditions) if args.conditions else None
-    St = StokesNumber(variables["St"], args.stokes, law.speed)
+    if args.speed is None and law.speed is not Speed.UNSTATED:
+        raise InputError(f"say which impact speed St was made with: --speed {law.speed} is the law's own")
+    St = StokesNumber(variables["St"], args.stokes, args.speed or Speed.UNSTATED)
     show(f"{law(St, variables['e_dry'], conditions, args.out_of_range):.6g}")

@@ -27,8 +27,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run_fig1(args: argparse.Namespace) -> None:
     """Write the Fig. 1 report and name its files."""
+    from restitution.errors import Defect, InputError
     from restitution.report import fig1
     from restitution.stokes import Speed
 
+    if not args.out:
+        raise InputError(Defect("names no folder", field="--out"))
     for name in fig1.write(args.out, Speed(args.speed)):
         show(str(Path(args.out) / name))

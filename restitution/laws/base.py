@@ -31,7 +31,9 @@ class Status(StrEnum):
     """How far a law's formula has been checked against its source."""
 
     VERIFIED = "verified"
-    """Read in the source, or in public code that implements it and names it."""
+    """Read in the source, or equal to the values it prints."""
+    IN_CODE = "read in code"
+    """Read in public code that implements it and names the source; the source was not opened."""
     DERIVED = "derived"
     """Derived or computed from stated equations; the derivation is in the docstring or the reference."""
     RECONSTRUCTED = "reconstructed"
@@ -68,6 +70,8 @@ class Law:
     """LaTeX of what the law gives, the left-hand side."""
     variables: ClassVar[tuple[str, ...]]
     """Names of the arguments; the first is the one that ``derivative`` and ``validity`` are about."""
+    upper: ClassVar[dict[str, float]] = {}
+    """Largest admissible value of a variable, where it has one; all variables are positive."""
     formula: ClassVar[str | None] = None
     formula_note: ClassVar[str] = ""
     validity: ClassVar[tuple[float, float]] = (0.0, np.inf)
@@ -148,13 +152,15 @@ class Law:
     def latex(self) -> str:
         """The equation in LaTeX."""
         if self.formula is None:
-            return rf"{self.symbol} = \text{{{self.formula_note}}}"
+            note = self.formula_note.replace("_", r"\_").replace("^", r"\^{}")
+            return rf"{self.symbol} = \text{{{note}}}"
         import sympy
 
         names = {sympy.Symbol(s, positive=True): self._latex_name(s) for s in self._symbols}
         # exp(x) would be typeset as a power of e, which here is a restitution.
         shown = self.expression().replace(sympy.exp, sympy.Function(r"\exp"))
-        return f"{self.symbol} = {sympy.latex(shown, symbol_names=names, order='none', ln_notation=True)}"
+        options = {"order": "none", "ln_notation": True, "mul_symbol": r"\,"}
+        return f"{self.symbol} = {sympy.latex(shown, symbol_names=names, **options)}"
 
     def _latex_name(self, symbol: str) -> str:
         return latex_name(symbol)
@@ -170,14 +176,16 @@ class Law:
                 f"{self.name} takes {', '.join(self.variables)}; got {len(args)} values and {sorted(kwargs)}"
             )
         arrays = [np.asarray(given[v], float) for v in self.variables]
+        for name, x in zip(self.variables, arrays, strict=True):
+            most = self.upper.get(name, np.inf)
+            wrong = ~((x > 0) & (x <= most))  # also NaN
+            if wrong.any():
+                rule = f"{self.name} needs a positive number" + (f", at most {most:g}" if most < np.inf else "")
+                raise InputError(Defect(rule, field=name, value=f"{x[wrong][0]:g}"))
         arrays[0] = self._in_range(arrays[0], out_of_range)
         return arrays
 
     def _in_range(self, x: np.ndarray, out_of_range: OutOfRange) -> np.ndarray:
-        if np.isnan(x).any() or (x <= 0).any():
-            raise InputError(
-                Defect(f"{self.name} needs a positive number", field=self.variables[0], value=str(x[()]))
-            )
         low, high = self.validity
         outside = (x < low) | (x > high)
         if out_of_range == "ignore" or not outside.any():

@@ -95,7 +95,7 @@ class NguyenLadd2002(CutOffLaw):
         "Nguyen & Ladd, Phys. Rev. E 66, 046708 (2002), doi:10.1103/PhysRevE.66.046708; "
         "ten Cate et al., Phys. Fluids 14, 4012 (2002)"
     )
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "form read in public code and documentation (ludwig, waLBerla) that cite it"
     checks: ClassVar = (
         CheckValue({"eps": 0.01}, 0.993 * 98.16038, 0.05, _DIFFERENCE, {"eps_c": 0.4, "eps_min": 1e-4}),
@@ -178,7 +178,7 @@ class Izard2014(ResistanceLaw):
     validity: ClassVar = (0.0, 0.031)
     validity_source: ClassVar = "that of 1/eps"
     reference: ClassVar = "Izard, Bonometti & Lacaze, J. Fluid Mech. 747, 422 (2014), doi:10.1017/jfm.2014.145"
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.UNVERIFIED
     evidence: ClassVar = (
         "that they shift the denominator is stated by Biegert et al. 2017; the paper was not opened"
     )
@@ -202,7 +202,7 @@ class _SimeonovCalantoni2012(CutOffLaw):
     reference: ClassVar = (
         "Simeonov & Calantoni, Int. J. Multiphase Flow 46, 38 (2012); Rettinger & Rude, arXiv:2003.01490"
     )
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "read in public code (waLBerla) that cites it"
     full: ClassVar = Goldman1967Translation
     eps_c: float = _eps_c(0.05, _CELLS_TANGENTIAL)

@@ -57,7 +57,7 @@ class Bertin2024(ReboundLaw):
     name: ClassVar = "bertin_2024"
     title: ClassVar = "Elastohydrodynamic rebound (table)"
     formula_note: ClassVar = "table of a numerical solution, monotone cubic in ln St"
-    speed: ClassVar = Speed.FAR
+    speed: ClassVar = Speed.FILM_EDGE
     validity: ClassVar = (10.0, 500.0)
     validity_source: ClassVar = "ends of the table; power laws beyond"
     reference: ClassVar = _REFERENCE
@@ -78,43 +78,48 @@ class Bertin2024(ReboundLaw):
 class EhdComposite(ReboundLaw):
     """Lubrication from h0 to D*, elastohydrodynamic rebound there, lubrication out to h0.
 
-    With L = ln(h0/D*) and s = 1 - L/St: e_eff = max(0, s e_dry e_EHD(s St) - L/St); h0, D* in radii.
+    With L = ln(h0/D*) and s = 1 - L/St: e_eff = max(0, s e_dry e_EHD(s St) - L/St). D* grows with the impact
+    speed as v^(4/5), hence D* = D_1 St^(4/5) for one sphere in one fluid; h0, D_1 in radii.
     """
 
     name: ClassVar = "ehd_composite"
     title: ClassVar = "Elastohydrodynamic composite"
-    formula_note: ClassVar = "max(0, s e_dry e_EHD(s St) - L/St), s = 1 - L/St, L = ln(h0/D*)"
+    formula_note: ClassVar = "max(0, s e_dry e_EHD(s St) - L/St), s = 1 - L/St, L = ln(h0/D*), D* = D_1 St^(4/5)"
     speed: ClassVar = Speed.FAR
     validity: ClassVar = (16.0, 500.0)
     validity_source: ClassVar = "s St within the table"
     reference: ClassVar = _REFERENCE
     status: ClassVar = Status.DERIVED
-    evidence: ClassVar = "composition of two derived pieces; assumes smooth bodies, E* = 55 GPa for the default D*"
+    evidence: ClassVar = "composition of two derived pieces; smooth bodies, E* = 55 GPa assumed for D_1"
     checks: ClassVar = tuple(
         CheckValue(
             {"St": St, "e_dry": 0.97}, e, 0.012,
-            f"independent evaluation with D* = {D_um} um, r = 1.5 mm; it interpolated the table linearly in St, "
-            "which runs up to 0.01 low between the nodes", {"h0": 0.4, "D_star": D_um * 1e-6 / 1.5e-3},
+            f"independent evaluation for the 3 mm sphere, D* = {D_um} um; it interpolated the table linearly in "
+            "St, which runs up to 0.01 low between the nodes",
         )
         for St, e, D_um in ((152.8, 0.78, 3.2), (78.6, 0.63, 1.9), (44.6, 0.42, 1.2), (23.1, 0.0, 0.7))
     )  # fmt: skip
     h0: float = parameter(
-        0.4, (1e-2, 10.0), "r", "gap where lubrication begins to act", "two cells at ten a diameter; a choice"
+        0.4, (1e-2, 10.0), "r", "gap where lubrication begins to act", "two cells at ten a diameter"
     )
-    D_star: float = parameter(
-        2.1e-3,
-        (1e-6, 9e-3),
+    D_1: float = parameter(
+        3.8e-5,
+        (1e-7, 1e-4),
         "r",
-        "elastohydrodynamic length",
-        "first rebound of Gondret's 3 mm sphere, E* = 55 GPa assumed",
+        "elastohydrodynamic length at St = 1",
+        "3.2 um for Gondret's 3 mm sphere at St 153",
     )
+
+    def _film(self, St: np.ndarray) -> np.ndarray:
+        return np.log(self.h0 / self.D_1) - 0.8 * np.log(St)
 
     def _value(self, St: np.ndarray, e_dry: np.ndarray) -> np.ndarray:
-        L = np.log(self.h0 / self.D_star)
-        return np.maximum(0.0, (1 - L / St) * e_dry * _e_ehd(St - L)[0] - L / St)
+        L = self._film(St)
+        return np.maximum(0.0, np.maximum(1 - L / St, 0.0) * e_dry * _e_ehd(St - L)[0] - np.maximum(L, 0) / St)
 
     def _derivative(self, St: np.ndarray, e_dry: np.ndarray) -> np.ndarray:
-        L = np.log(self.h0 / self.D_star)
+        L, L_slope = self._film(St), -0.8 / St
         e, slope = _e_ehd(St - L)
-        rising = L / St**2 * (1 + e_dry * e) + (1 - L / St) * e_dry * slope
+        s_slope = L / St**2 - L_slope / St
+        rising = s_slope * (1 + e_dry * e) + (1 - L / St) * e_dry * slope * (1 - L_slope)
         return np.where(self._value(St, e_dry) > 0, rising, 0.0)

@@ -69,7 +69,7 @@ class YangHunt2008(FilmLaw):
     reference: ClassVar = (
         "Yang & Hunt, Phil. Trans. R. Soc. A 366, 2205 (2008), doi:10.1098/rsta.2008.0014; form of " + _NIJSSEN
     )
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "read in the public script of Nijssen et al., their eqs. 5 and 6"
     checks: ClassVar = (
         CheckValue({"v": 0.585, **_RV10}, 0.05e-6, 0.005e-6, _INDEPENDENT + ": 1st bounce, St 152"),
@@ -90,7 +90,7 @@ class Nijssen2022(FilmLaw):
     variables: ClassVar = ("v", "mu", "E_r", "r")
     formula: ClassVar = "Max(0.37*((mu*v/E_r)**2*r**3)**(1/5), sigma)"
     reference: ClassVar = _NIJSSEN
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "read in the authors' public script"
     checks: ClassVar = (
         CheckValue({"v": 0.585, **_RV10}, 0.15e-6, 1e-12, "Gondret's 3 mm sphere is limited by its roughness"),

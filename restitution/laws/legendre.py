@@ -31,7 +31,7 @@ class Legendre2005(ReboundLaw):
     validity: ClassVar = (10.0, 1000.0)
     validity_source: ClassVar = "drops and solid spheres, St* of about 10 to above 1000"
     reference: ClassVar = _REFERENCE
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "read in public code (StokesWallMPPIC) with its README; the papers were not opened"
     checks: ClassVar = (
         CheckValue(
@@ -56,7 +56,7 @@ class Legendre2006PlainSt(ReboundLaw):
     validity: ClassVar = (10.0, 1000.0)
     validity_source: ClassVar = "as for legendre_2005"
     reference: ClassVar = _REFERENCE
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = (
         "read in LIGGGHTS normal_model_hooke.h, 'Empirical from Legendre (2006)'; its user sets the constant"
     )

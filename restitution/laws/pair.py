@@ -24,7 +24,10 @@ _JEFFREY_ONISHI = (
     "Dance & Maxey, J. Comput. Phys. 189, 212 (2003)"
 )
 _TABLE = "resistance table of A. K. Townsend's Stokesian-dynamics code; tolerance is the error stated for the law"
-_EVIDENCE = "coefficients read in public code (Grains3D); compared with the table of Townsend"
+_EVIDENCE = (
+    "logarithms read in public code (Grains3D), constants those that a public test prints from Jeffrey & Onishi; "
+    "compared with the table of Townsend"
+)
 _WITHIN_5 = "within 5 % of the table"
 
 
@@ -44,7 +47,7 @@ class Taylor1925Pair(ResistanceLaw):
     validity: ClassVar = (0.0, 0.006)
     validity_source: ClassVar = "within 5 % of the table for equal spheres"
     reference: ClassVar = "Taylor, as in taylor_1925; size ratio as in Simeonov & Calantoni, IJMF 46, 38 (2012)"
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "read in public code (waLBerla) and documentation (Lethe)"
     checks: ClassVar = (
         CheckValue({"eps": 1e-5, "kappa": 1.0}, 25003.5858, 4.0, _TABLE),
@@ -76,7 +79,7 @@ class JeffreyOnishi1984Lubrication(ResistanceLaw):
     validity: ClassVar = (0.0, 0.1)
     validity_source: ClassVar = "the constant left out holds to 0.01"
     reference: ClassVar = _JEFFREY_ONISHI + "; Kroupa et al., Langmuir 32, 8451 (2016)"
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.DERIVED
     evidence: ClassVar = (
         "kappa = 1 and infinity read in public code (pe, Grains3D); kappa = 0.1, 0.01 compared with the table "
         "of Townsend; kappa > 1 by reciprocity"
@@ -98,7 +101,7 @@ class JeffreyOnishi1984NormalSelf(ResistanceLaw):
     validity: ClassVar = (0.0, 0.6)
     validity_source: ClassVar = _WITHIN_5
     reference: ClassVar = _JEFFREY_ONISHI
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = _EVIDENCE
     checks: ClassVar = (CheckValue({"eps": 0.1}, 4.03209762, 0.013, _TABLE),)
 
@@ -114,7 +117,7 @@ class JeffreyOnishi1984NormalCross(ResistanceLaw):
     validity: ClassVar = (0.0, 0.6)
     validity_source: ClassVar = _WITHIN_5
     reference: ClassVar = _JEFFREY_ONISHI
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = _EVIDENCE
     checks: ClassVar = (CheckValue({"eps": 0.1}, 3.38119748, 0.007, _TABLE),)
 
@@ -133,7 +136,7 @@ class JeffreyOnishi1984TangentialSelf(ResistanceLaw):
     validity: ClassVar = (0.0, 0.56)
     validity_source: ClassVar = _WITHIN_5
     reference: ClassVar = _JEFFREY_ONISHI
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = _EVIDENCE
     checks: ClassVar = (CheckValue({"eps": 0.1}, 1.39300628, 0.0115, _TABLE),)
 
@@ -149,7 +152,7 @@ class JeffreyOnishi1984TangentialCross(ResistanceLaw):
     validity: ClassVar = (0.0, 0.7)
     validity_source: ClassVar = _WITHIN_5
     reference: ClassVar = _JEFFREY_ONISHI
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = _EVIDENCE
     checks: ClassVar = (CheckValue({"eps": 0.1}, 0.659875260, 0.0027, _TABLE),)
 
@@ -169,7 +172,7 @@ class JeffreyOnishi1984CouplingForce(ResistanceLaw):
     validity: ClassVar = (0.0, 0.05)
     validity_source: ClassVar = _WITHIN_5
     reference: ClassVar = _JEFFREY_ONISHI
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = _EVIDENCE
     checks: ClassVar = (CheckValue({"eps": 0.05}, 0.543189570 * 2 / 3, 0.010, _TABLE),)
 
@@ -186,6 +189,6 @@ class JeffreyOnishi1984Rotation(ResistanceLaw):
     validity: ClassVar = (0.0, 0.2)
     validity_source: ClassVar = _WITHIN_5
     reference: ClassVar = _JEFFREY_ONISHI
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = _EVIDENCE
     checks: ClassVar = (CheckValue({"eps": 0.1}, 1.23302792, 0.027, _TABLE),)

@@ -25,6 +25,7 @@ class ReboundLaw(Law):
     family: ClassVar[str] = "rebound"
     symbol: ClassVar[str] = r"e_{\mathrm{eff}}"
     variables: ClassVar[tuple[str, ...]] = ("St", "e_dry")
+    upper: ClassVar[dict[str, float]] = {"e_dry": 1.0}
     convention: ClassVar[str] = "st"
     speed: ClassVar[Speed] = Speed.UNSTATED
     """The impact speed its source means; ``unstated`` takes any."""
@@ -64,7 +65,7 @@ class ReboundLaw(Law):
                 f"{self.name} was given a bare number {St!r} as Stokes number; "
                 f"say which one it is: StokesNumber({St!r}, {self.convention!r})"
             )
-        if Speed.UNSTATED not in (self.speed, St.speed) and self.speed != St.speed:
+        if self.speed not in (Speed.UNSTATED, St.speed):
             raise ConventionError(
                 f"{self.name} is meant for the {self.speed} impact speed, the Stokes number was made with the "
                 f"{St.speed} speed; these cannot be converted. St.read_as({self.speed.value!r}) ignores that"

@@ -52,7 +52,7 @@ class CooleyONeill1969(ResistanceLaw):
     reference: ClassVar = (
         "Cooley & O'Neill, Mathematika 16, 37 (1969); Cox & Brenner, Chem. Eng. Sci. 22, 1753 (1967)"
     )
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = (
         "read in public code that names it; coefficients -0.2 and 0.9712799 recovered from the exact series"
     )
@@ -79,7 +79,7 @@ class Jeffrey1982(ResistanceLaw):
         "Jeffrey, Mathematika 29, 58 (1982) (attribution not checked); used by Kroupa et al., Langmuir 32, 8451 "
         "(2016), eq. 16"
     )
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = (
         "coefficients read in public code (Grains3D, pe); -1/5 and -1/21 recovered from the exact series"
     )

@@ -35,7 +35,7 @@ class Goldman1967Translation(ResistanceLaw):
     validity: ClassVar = (0.0, 0.13)
     validity_source: ClassVar = "within 5 % of the exact table"
     reference: ClassVar = _GOLDMAN
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "coefficients read in public code; " + _AGREES
     checks: ClassVar = (CheckValue({"eps": 0.0032}, 4.0223, 0.002, _EXACT),)
 
@@ -55,7 +55,7 @@ class Goldman1967Rotation(ResistanceLaw):
     validity: ClassVar = (0.0, 0.046)
     validity_source: ClassVar = "within 5 % of the exact table"
     reference: ClassVar = _GOLDMAN
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.UNVERIFIED
     evidence: ClassVar = _AGREES
     checks: ClassVar = (CheckValue({"eps": 0.0032}, 2.6793, 0.002, _EXACT),)
 
@@ -72,7 +72,7 @@ class Goldman1967CouplingTorque(ResistanceLaw):
     validity: ClassVar = (0.0, 0.02)
     validity_source: ClassVar = "within 5 %: 0.5 % at 0.005 by the exact table, 5 % at 0.02 by dance_maxey_2003"
     reference: ClassVar = _GOLDMAN
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.UNVERIFIED
     evidence: ClassVar = _AGREES
     checks: ClassVar = (CheckValue({"eps": 0.005}, 0.34187, 0.0017, _EXACT),)
 
@@ -89,7 +89,7 @@ class Goldman1967CouplingForce(ResistanceLaw):
     validity: ClassVar = (0.0, 0.02)
     validity_source: ClassVar = "within 5 %: 0.5 % at 0.005 by the exact table, 5 % at 0.02 by dance_maxey_2003"
     reference: ClassVar = _GOLDMAN
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.UNVERIFIED
     evidence: ClassVar = _AGREES
     checks: ClassVar = (CheckValue({"eps": 0.005}, 0.455827, 0.0023, _EXACT),)
 
@@ -108,7 +108,7 @@ class DanceMaxey2003Translation(ResistanceLaw):
     validity: ClassVar = (0.0, 0.2)
     validity_source: ClassVar = "within 5 %: exact table up to 0.13, chaoui_feuillebois_2003 beyond"
     reference: ClassVar = _DANCE_MAXEY
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "coefficients read in public code (Grains3D); " + _AGREES
     checks: ClassVar = (CheckValue({"eps": 0.0453}, 2.6475, 0.022, _EXACT),)
 
@@ -128,7 +128,7 @@ class DanceMaxey2003Rotation(ResistanceLaw):
     validity: ClassVar = (0.0, 0.13)
     validity_source: ClassVar = "within 5 % of the exact table"
     reference: ClassVar = _DANCE_MAXEY
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "coefficients read in public code (Grains3D); " + _AGREES
     checks: ClassVar = (CheckValue({"eps": 0.0453}, 1.6996, 0.018, _EXACT),)
 
@@ -148,7 +148,7 @@ class DanceMaxey2003CouplingForce(ResistanceLaw):
     validity: ClassVar = (0.0, 0.046)
     validity_source: ClassVar = "within 5 % of the exact table"
     reference: ClassVar = _DANCE_MAXEY
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "coefficients read in public code (Grains3D); " + _AGREES
     checks: ClassVar = (CheckValue({"eps": 0.005}, 0.455827, 0.0006, _EXACT),)
 
@@ -191,7 +191,7 @@ class Faxen1922(ResistanceLaw):
     validity: ClassVar = (0.04, float("inf"))
     validity_source: ClassVar = "within 5 % of the exact table"
     reference: ClassVar = "Faxen, Ann. Phys. 373, 89 (1922); Happel & Brenner, Low Reynolds Number Hydrodynamics"
-    status: ClassVar = Status.VERIFIED
+    status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "read in public code that names it; " + _AGREES
     checks: ClassVar = (
         CheckValue({"eps": 2.7622}, 1.1738, 0.0001, _EXACT),

@@ -37,7 +37,6 @@ def style() -> Iterator[None]:
     """Draw in the project's style, whatever the user's settings are."""
     import matplotlib
 
-    matplotlib.use("Agg")
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)

@@ -26,15 +26,14 @@ LINES = {
     "eq4_linear": (r"$e-18(1+e)/St$ (rejected)", "#777777", (0, (3, 1.5, 1, 1.5))),
     "eq4_linear_relative": (r"$e[1-18(1+e)/St]$ (rejected)", "#777777", (0, (1, 3))),
     "legendre_2005": ("Legendre et al. 2005", "#000000", "-"),
-    "two_way_lubrication": (r"two-way lubrication, $h_{min}=10^{-4}r$", "#0072B2", (0, (6, 2))),
-    "barnocky_davis_1988": (r"Barnocky & Davis, $St_c=10$", "#D55E00", (0, (3, 1.5, 1, 1.5))),
-    "bertin_2024": ("elastohydrodynamic, smooth sphere", "#009E73", (0, (1, 1.2))),
-    "ehd_composite": ("elastohydrodynamic composite", "#009E73", (0, (8, 2, 1, 2, 1, 2))),
+    "barnocky_davis_1988": (r"Barnocky & Davis 1988, $St_c=10$", "#D55E00", (0, (3, 1.5, 1, 1.5))),
+    "two_way_lubrication": (r"Two-way lubrication, $h_{min}=10^{-4}r$ (derived here)", "#0072B2", (0, (6, 2))),
+    "ehd_composite": ("Elastohydrodynamic composite (derived here)", "#009E73", (0, (1, 1.2))),
 }
 # label, marker, face; the edge is black
 SERIES = {
     "gondret2002_st152": ("Gondret et al. 2002, 3 mm (used in the simulation)", "s", "black"),
-    "gondret2002_st27": ("Gondret et al. 2002, 6 mm", "o", "white"),
+    "gondret2002_st27": ("Gondret et al. 2002, 6 mm (impact speed quoted)", "o", "white"),
     "li2012": ("Li et al. 2012, five drops", "^", "white"),
     "biegert2017": ("Biegert et al. 2017, simulation", "D", "#cccccc"),
 }
@@ -51,7 +50,7 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
         left, right = figure.subplots(1, 2, sharey=True)
         for ax, title, names in (
             (left, "(a) Readings of Eq. (4) of the source abstract", content.EQ4_READINGS),
-            (right, "(b) Published laws", content.LITERATURE),
+            (right, "(b) Other laws", content.OTHERS),
         ):
             _known_without_points(ax)
             _lines(ax, names, fig1)
@@ -65,7 +64,7 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
             ax.legend(handles=handles, loc="lower right", fontsize=8.5, handlelength=3.6)
         left.set_ylabel(r"effective restitution  $e_{\mathrm{eff}}/e_{\mathrm{dry}}$  [-]")
         points = [_key(name) for name in SERIES]
-        figure.legend(handles=points, loc="outside lower center", ncols=4, fontsize=8.5)
+        figure.legend(handles=points, loc="outside lower center", ncols=2, fontsize=8.5)
         return save(figure)
 
 
@@ -91,9 +90,10 @@ def _lines(ax: Axes, names: tuple[str, ...], fig1: Fig1) -> None:
 
 
 def _points(ax: Axes, fig1: Fig1) -> None:
+    series = fig1.impacts.record.map(_series)
     for name in SERIES:
         _, marker, face = SERIES[name]
-        rows = fig1.impacts[fig1.impacts.record.str.startswith(name)]
+        rows = fig1.impacts[series == name]
         rebound, limit = rows[rows.outcome == "rebound"], rows[rows.e_eff_upper < rows.e_dry]
         ax.errorbar(
             rebound.stokes.astype(float), (rebound.e_eff / rebound.e_dry).astype(float),
@@ -105,6 +105,11 @@ def _points(ax: Axes, fig1: Fig1) -> None:
             limit.stokes.astype(float), upper, xerr=limit.stokes_sigma.astype(float), yerr=0.06, uplims=True,
             fmt=marker, ms=4, mfc=face, mec="black", color="black", elinewidth=0.8, zorder=3,
         )  # fmt: skip
+
+
+def _series(record: str) -> str:
+    """The series a record is drawn in; a record without one is an error, not an omission."""
+    return next(name for name in SERIES if record.startswith(name))
 
 
 def _key(name: str):
