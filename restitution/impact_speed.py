@@ -12,10 +12,10 @@ The definitions differ in the frames that the branches are fitted to:
 - ``window``: the straight line through the n nearest frames on each side (default 2), no extrapolation.
 
 Uncertainties come from draws of the averaged fits, so they follow from the position noise and from the choice
-of window. Errors of d, density and viscosity are not in them. On synthetic flights the 68 % intervals of e_eff
-cover 70 to 80 % where only gravity and drag act, and 45 to 65 % where a wake brakes the sphere after the rebound
-by up to v/sqrt(d/g), e_eff then being low by one standard deviation: what decays within a frame or two cannot be
-seen. The wake of the shipped records is about a third of that.
+of window. Errors of d, density and viscosity are not in them. On synthetic flights, every other one with a wake that brakes the sphere after
+the rebound by up to v_in/sqrt(d/g) (three times that of the shipped records), the 68 % intervals of v_in, v_out
+and e_eff cover 67 to 70 % for gap tracks and 69 to 78 % for velocity tracks; of the flights with a wake alone 45 to
+65 %, e_eff being low by one standard deviation: what decays within a frame or two cannot be seen.
 """
 
 from __future__ import annotations

@@ -180,6 +180,21 @@ def test_far_is_not_slowed_by_a_resolved_film_but_contact_is():
     assert found["contact"]["impact_speed_m_s"] < 0.95 * v0
 
 
+@pytest.mark.parametrize("onset", [0.2, 0.5])
+def test_far_keeps_what_a_thicker_film_has_taken(onset):
+    """A film from h0 > 0.1 d on has slowed the sphere by ln(h0/0.1 d)/St there: that much is in ``far``."""
+    d, v0, St = STEEL_IN_OIL.sphere.diameter, 0.5, 60.0
+    gap, h0, dt = [4e-3], onset * d, 2e-6
+    while gap[-1] > 1e-6:
+        h = gap[-1]
+        gap.append(h - dt * v0 * (1 - np.log(h0 / h) / St if h < h0 else 1))
+    down = np.array(gap[:-1])
+    record = np.concatenate([down, down[::-1]])[::10]
+    row = find_impacts(as_track(dt * 10 * np.arange(len(record)), record, sigma=1e-7), STEEL_IN_OIL, "far").rows[0]
+    expected = 1 - np.log(onset / 0.1) / St
+    assert row["impact_speed_m_s"] / v0 == pytest.approx(expected, abs=0.4 * (1 - expected) + 0.005)
+
+
 def test_a_bounce_below_the_film_gives_a_limit():
     fourth = shipped("gondret2002_st152", "far").table().iloc[3]
     assert fourth.outcome == "not_resolved"
