@@ -12,10 +12,11 @@ The definitions differ in the frames that the branches are fitted to:
 - ``window``: the straight line through the n nearest frames on each side (default 2), no extrapolation.
 
 Uncertainties come from draws of the averaged fits, so they follow from the position noise and from the choice
-of window. Errors of d, density and viscosity are not in them. On synthetic flights, every other one with a wake that brakes the sphere after
-the rebound by up to v_in/sqrt(d/g) (three times that of the shipped records), the 68 % intervals of v_in, v_out
-and e_eff cover 67 to 70 % for gap tracks and 69 to 78 % for velocity tracks; of the flights with a wake alone 45 to
-65 %, e_eff being low by one standard deviation: what decays within a frame or two cannot be seen.
+of window. Errors of d, density and viscosity are not in them. On synthetic flights, every other one with a wake
+that brakes the sphere after the rebound by up to v_in/sqrt(d/g) (three times that of the shipped records), the
+68 % intervals of v_in, v_out and e_eff cover 67 to 70 % for gap tracks and 69 to 78 % for velocity tracks; of the
+flights with a wake alone 45 to 65 %, e_eff being low by one standard deviation: what decays within a frame or two
+cannot be seen.
 """
 
 from __future__ import annotations
@@ -87,7 +88,8 @@ class SpeedMeasure:
             t_c, v_in, v_out = self._meet(before, after, rng)
             v_in, v_out = _moving(v_in, "approach"), _moving(v_out, "rebound")
         except UnresolvedError as reason:
-            if reason.branch == "approach":
+            # Of a flight that was not seen to come down nothing can be excluded.
+            if reason.branch == "approach" or np.argmax(self.track.value[contact.rebound]) + 1 == len(after):
                 raise
             return self._limited(contact, str(reason), rng)
         scale = self._scale(rng)
@@ -135,7 +137,7 @@ class SpeedMeasure:
         if self.speed is Speed.WINDOW:
             use = use[: self.window_frames]
         if len(use) < (self.window_frames if self.speed is Speed.WINDOW else 2):
-            raise UnresolvedError(branch, f"only {len(use)} frames resolve")
+            raise UnresolvedError(branch, f"only {len(use)} frame{'s' * (len(use) != 1)} resolve")
         return use
 
     def _touching(self, frames: NDArray | list[int]) -> NDArray:

@@ -209,6 +209,15 @@ def test_impacts_are_numbered_as_in_the_record():
     assert "impact 1" in found.notes[0]
 
 
+def test_a_flight_not_seen_to_come_down_is_not_limited():
+    """Two frames after the contact, both rising: too few for a speed, and no reason to exclude a high one."""
+    flights, truths = fly(8e-3, -0.4, (0.75,), 0.6)
+    times = np.append(np.arange(0, truths[0].time_s, 4e-3), truths[0].time_s + np.array([1e-3, 2e-3]))
+    found = find_impacts(as_track(times, film(flights, times)[0], sigma=1e-5), STEEL_IN_OIL, "far")
+    assert not found.rows
+    assert "rebound" in found.notes[0]
+
+
 def test_no_rebound_gives_an_upper_limit():
     flights, truths = fly(8e-3, -0.4, (), 0.6)
     fall = np.arange(0, flights[0].end, 1e-3)
