@@ -96,8 +96,8 @@ class EhdComposite(ReboundLaw):
     checks: ClassVar = tuple(
         CheckValue(
             {"St": St, "e_dry": 0.97}, e, 0.012,
-            f"independent evaluation for the 3 mm sphere, D* = {D_um} um, with an earlier table, up to 0.015 higher in "
-            "this range, interpolated linearly in St, which runs up to 0.01 low",
+            f"independent evaluation, 3 mm sphere, D* = {D_um} um, with an earlier table up to 0.015 higher "
+            "here, interpolated linearly in St, which runs up to 0.01 low",
         )
         for St, e, D_um in ((152.8, 0.78, 3.2), (78.6, 0.63, 1.9), (44.6, 0.42, 1.2), (23.1, 0.0, 0.7))
     )  # fmt: skip
