@@ -1,0 +1,81 @@
+"""The sweeps over the lattice: one time step, or two while the planes are in the cache."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit, prange
+
+from lbm.cache import kernel
+from lbm.collision import collide
+from lbm.lattice import give_back, lend, row_case, row_starts
+from lbm.memory import load_cell, prefetch_cell, store_cell
+
+_PREFETCH_LINES = 4
+"""Cache lines a row asks for ahead, per population; 2 are asked for at a time (benchmarks/README.md)."""
+
+
+@njit(forceinline=True)
+def exchange_pairs(f):
+    """Each population in the place of its opposite."""
+    return (
+        f[0], f[2], f[1], f[4], f[3], f[6], f[5], f[8], f[7], f[10], f[9],
+        f[12], f[11], f[14], f[13], f[16], f[15], f[18], f[17],
+    )  # fmt: skip
+
+
+@njit(error_model="numpy", fastmath={"contract"})
+def _step_row(populations, grid, rows, parity, y, z, rates, force):
+    """Collide and stream one row in place."""
+    case = row_case(grid, y, z)
+    starts = row_starts(grid, rows, parity, case, y, z)
+    lend(populations, grid, rows, parity, case, y, z)
+    line = 64 // populations.itemsize
+    for first in range(0, grid.nx, 2 * line):
+        # What lies beyond the end of the row is the next row, so asking past the end is of use.
+        prefetch_cell(populations, starts, first + _PREFETCH_LINES * line)
+        prefetch_cell(populations, starts, first + (_PREFETCH_LINES + 1) * line)
+        for x in range(first, min(grid.nx, first + 2 * line)):
+            f = collide(load_cell(populations, starts, x), rates, force)
+            store_cell(populations, starts, x, exchange_pairs(f))
+    give_back(populations, grid, rows, parity, case, y, z)
+
+
+@kernel
+def sweep(populations, grid, rows, parity, rates, force, planes):
+    """One time step of ``planes`` planes (all, or 0 to compile only)."""
+    for plane in prange(planes):
+        for y in range(grid.ny):
+            _step_row(populations, grid, rows, parity, y, np.int64(plane), rates, force)
+
+
+@kernel
+def sweep_two(populations, grid, rows, rates, force, blocks, tile, planes):
+    """Two time steps from parity 0 in one pass over memory.
+
+    The odd step of row (y, z) needs the even step of the rows around it. Each of ``blocks`` slabs of planes
+    is swept in strips of ``tile`` rows; behind the even step of plane z follows the odd step of plane z - 1,
+    one row behind as well, while its populations are still in the cache. Rows next to another slab or to the
+    faces in y wait for the end. Every row is computed from the same values as by two sweeps: same result.
+    """
+    ny = grid.ny
+    for block_ in prange(blocks):
+        block = np.int64(block_)
+        low, high = planes * block // blocks, planes * (block + 1) // blocks
+        for first in range(0, ny, tile):
+            last = min(ny, first + tile)
+            for z in range(low, high):
+                for y in range(first, last):
+                    _step_row(populations, grid, rows, 0, y, z, rates, force)
+                if z - 1 > low:
+                    for y in range(max(1, first - 1), last - 1):
+                        _step_row(populations, grid, rows, 1, y, z - 1, rates, force)
+        for z in range(low + 1, high - 1):
+            _step_row(populations, grid, rows, 1, ny - 1, z, rates, force)
+            _step_row(populations, grid, rows, 1, 0, z, rates, force)
+    for half in prange(2 * blocks):
+        block = np.int64(half)
+        low, high = planes * (block // 2) // blocks, planes * (block // 2 + 1) // blocks
+        if low < high - 1 or (low < high and block % 2 == 0):
+            z = low if block % 2 == 0 else high - 1
+            for y in range(ny):
+                _step_row(populations, grid, rows, 1, y, z, rates, force)
