@@ -2,14 +2,39 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
 
 from lbm.errors import OutputError
+
+
+class _Sink(io.FileIO):
+    """A file that remembers its first failure instead of raising it inside HDF5, which cannot recover."""
+
+    failure: OSError | None = None
+
+    def write(self, data) -> int:
+        rest = memoryview(data).cast("B")
+        size = len(rest)
+        while len(rest) and self.failure is None:
+            try:
+                rest = rest[super().write(rest) :]
+            except OSError as error:
+                self.failure = error
+        return size
+
+    def truncate(self, size: int | None = None) -> int:
+        if self.failure is None:
+            try:
+                return super().truncate(size)
+            except OSError as error:
+                self.failure = error
+        return size or 0
 
 
 @contextmanager
@@ -23,16 +48,14 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
     aside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with h5py.File(aside, "w") as file:
-            yield file
-        with aside.open("rb+") as written:
-            os.fsync(written.fileno())
+        with _Sink(aside, "w+") as sink:
+            with h5py.File(sink, "w") as file:
+                yield file
+            if sink.failure is not None:
+                raise sink.failure
+            os.fsync(sink.fileno())
         aside.replace(path)
-    except (OSError, RuntimeError) as error:
-        # h5py reports a failed flush on closing as RuntimeError
-        raise OutputError(
-            f"{path}: could not be written ({error}); an earlier file of that name is intact"
-        ) from error
+    except OSError as error:
+        raise OutputError(f"{path}: not written ({error}); a file of that name that was there is intact") from error
     finally:
-        with suppress(OSError):
-            aside.unlink(missing_ok=True)
+        aside.unlink(missing_ok=True)

@@ -30,7 +30,7 @@ from numba import njit
 
 from lbm.cache import kernel
 from lbm.memory import prefetch
-from lbm.stencil import C, OPPOSITE, Q, mirrored
+from lbm.stencil import OPPOSITE, C, Q, mirrored
 
 PERIODIC, SLIP, BOUNCE = 0, 1, 2
 """What ``remote`` does beyond a face."""

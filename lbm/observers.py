@@ -11,6 +11,7 @@ import numpy as np
 
 from lbm import fields
 from lbm.errors import DivergenceError, InputError
+from lbm.vtkhdf import write_image
 
 if TYPE_CHECKING:
     from lbm.simulation import Simulation
@@ -143,8 +144,6 @@ class FieldOutput:
 
     def __call__(self, simulation: Simulation) -> None:
         """Write one file."""
-        from lbm.vtkhdf import write_image
-
         path = Path(self.directory) / f"{self.stem}_{simulation.steps:08d}.vtkhdf"
         rho, u = simulation.fields()
         write_image(path, {"density": rho, "velocity": u})
@@ -157,14 +156,12 @@ class Checkpoint:
 
     every: int
     path: Path | str
-    guard: DivergenceGuard = DivergenceGuard()  # noqa: RUF009 - immutable
+    guard: DivergenceGuard = DivergenceGuard()
 
     def __post_init__(self) -> None:
         _check_every(self.every)
 
     def __call__(self, simulation: Simulation) -> None:
         """Check and save."""
-        from lbm.checkpoint import save
-
         self.guard(simulation)
-        save(simulation, self.path)
+        simulation.save(self.path)

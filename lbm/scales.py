@@ -110,7 +110,7 @@ class FlowScales:
 
     @property
     def relaxation_time(self) -> float:
-        """tau = 3 viscosity + 1/2."""
+        """Relaxation time of the stress, tau = 3 viscosity + 1/2."""
         return 3 * self.viscosity + 0.5
 
     @property

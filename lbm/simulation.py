@@ -6,11 +6,12 @@ import operator
 import os
 import time
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 
 import numba
 import numpy as np
 
-from lbm import cache, faces, fields, kernels
+from lbm import cache, checkpoint, faces, fields, kernels
 from lbm.errors import InputError
 from lbm.lattice import Lattice
 from lbm.observers import DivergenceGuard, Observer
@@ -113,6 +114,14 @@ class Simulation:
     def bytes_per_cell(self) -> float:
         """Memory of the populations, pads included."""
         return self.lattice.populations.nbytes / np.prod(self.shape)
+
+    def save(self, path: Path | str) -> None:
+        """Write a checkpoint; see :mod:`lbm.checkpoint`."""
+        checkpoint.save(self, path)
+
+    def restore(self, path: Path | str) -> None:
+        """Continue from a checkpoint of a simulation set up like this one; see :mod:`lbm.checkpoint`."""
+        checkpoint.restore(self, path)
 
     def compile(self) -> float:
         """Compile, or load from the cache, the kernels this simulation needs; seconds taken."""

@@ -33,4 +33,4 @@ def mirrored(axis: int) -> np.ndarray:
     """Index of the velocity with the component along ``axis`` reversed, for each velocity."""
     flipped = C.copy()
     flipped[:, axis] *= -1
-    return np.array([int(np.flatnonzero((C == c).all(axis=1))[0]) for c in flipped], dtype=np.int64)
+    return np.array([int(np.flatnonzero((c == C).all(axis=1))[0]) for c in flipped], dtype=np.int64)
