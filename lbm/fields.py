@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit, prange
 
 from lbm.cache import kernel
-from lbm.lattice import Lattice, incoming, lend, row_case, row_starts
+from lbm.lattice import Lattice, incoming, lend, row_starts
 from lbm.memory import load_cell
 from lbm.stencil import C, Q, W
 
@@ -34,9 +34,8 @@ def _read(populations, grid, rows, parity, half_force, rho, u):
     for plane in prange(grid.nz):
         z = np.int64(plane)
         for y in range(grid.ny):
-            case = row_case(grid, y, z)
-            starts = row_starts(grid, rows, parity, case, y, z)
-            lend(populations, grid, rows, parity, case, y, z)
+            starts = row_starts(grid, rows, parity, y, z)
+            lend(populations, grid, rows, parity, y, z)
             for x in range(grid.nx):
                 drho, jx, jy, jz = moments_of(load_cell(populations, starts, x))
                 density = 1.0 + drho
@@ -53,9 +52,8 @@ def _sum_planes(populations, grid, rows, parity, half_force, low, high, top_spee
         z = np.int64(plane)
         mass = px = py = pz = energy = outside = 0.0
         for y in range(grid.ny):
-            case = row_case(grid, y, z)
-            starts = row_starts(grid, rows, parity, case, y, z)
-            lend(populations, grid, rows, parity, case, y, z)
+            starts = row_starts(grid, rows, parity, y, z)
+            lend(populations, grid, rows, parity, y, z)
             for x in range(grid.nx):
                 drho, jx, jy, jz = moments_of(load_cell(populations, starts, x))
                 rho = np.float64(drho) + 1.0

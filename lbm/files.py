@@ -56,6 +56,8 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
             os.fsync(sink.fileno())
         aside.replace(path)
     except OSError as error:
-        raise OutputError(f"{path}: not written ({error}); a file of that name that was there is intact") from error
+        raise OutputError(
+            f"{path}: not written ({error}); a file of that name that was there is intact"
+        ) from error
     finally:
         aside.unlink(missing_ok=True)

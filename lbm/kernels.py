@@ -7,11 +7,11 @@ from numba import njit, prange
 
 from lbm.cache import kernel
 from lbm.collision import collide
-from lbm.lattice import give_back, lend, row_case, row_starts
+from lbm.lattice import give_back, lend, row_starts
 from lbm.memory import load_cell, prefetch_cell, store_cell
 
-_PREFETCH_LINES = 4
-"""Cache lines a row asks for ahead, per population; 2 are asked for at a time (benchmarks/README.md)."""
+_LINES, _AHEAD = 2, 6
+"""A row is swept in strips of this many cache lines, and asks for memory this many lines ahead."""
 
 
 @njit(forceinline=True)
@@ -24,28 +24,31 @@ def exchange_pairs(f):
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def _step_row(populations, grid, rows, parity, y, z, rates, force):
-    """Collide and stream one row in place."""
-    case = row_case(grid, y, z)
-    starts = row_starts(grid, rows, parity, case, y, z)
-    lend(populations, grid, rows, parity, case, y, z)
+def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
+    """Collide and stream rows first to last - 1 of plane z in place."""
     line = 64 // populations.itemsize
-    for first in range(0, grid.nx, 2 * line):
-        # What lies beyond the end of the row is the next row, so asking past the end is of use.
-        prefetch_cell(populations, starts, first + _PREFETCH_LINES * line)
-        prefetch_cell(populations, starts, first + (_PREFETCH_LINES + 1) * line)
-        for x in range(first, min(grid.nx, first + 2 * line)):
-            f = collide(load_cell(populations, starts, x), rates, force)
-            store_cell(populations, starts, x, exchange_pairs(f))
-    give_back(populations, grid, rows, parity, case, y, z)
+    if first < last:
+        lend(populations, grid, rows, parity, first, z)
+    for y in range(first, last):
+        if y + 1 < last:
+            # A row ahead: a vector load right behind the store of one of its elements would stall.
+            lend(populations, grid, rows, parity, y + 1, z)
+        starts = row_starts(grid, rows, parity, y, z)
+        for strip in range(0, grid.nx, _LINES * line):
+            # What lies beyond the end of the row is the next row, so asking past the end is of use.
+            for i in range(_LINES):
+                prefetch_cell(populations, starts, strip + (_AHEAD + i) * line)
+            for x in range(strip, min(grid.nx, strip + _LINES * line)):
+                f = collide(load_cell(populations, starts, x), rates, force)
+                store_cell(populations, starts, x, exchange_pairs(f))
+        give_back(populations, grid, rows, parity, y, z)
 
 
 @kernel
 def sweep(populations, grid, rows, parity, rates, force, planes):
     """One time step of ``planes`` planes (all, or 0 to compile only)."""
     for plane in prange(planes):
-        for y in range(grid.ny):
-            _step_row(populations, grid, rows, parity, y, np.int64(plane), rates, force)
+        _step_rows(populations, grid, rows, parity, 0, grid.ny, np.int64(plane), rates, force)
 
 
 @kernel
@@ -64,18 +67,15 @@ def sweep_two(populations, grid, rows, rates, force, blocks, tile, planes):
         for first in range(0, ny, tile):
             last = min(ny, first + tile)
             for z in range(low, high):
-                for y in range(first, last):
-                    _step_row(populations, grid, rows, 0, y, z, rates, force)
+                _step_rows(populations, grid, rows, 0, first, last, z, rates, force)
                 if z - 1 > low:
-                    for y in range(max(1, first - 1), last - 1):
-                        _step_row(populations, grid, rows, 1, y, z - 1, rates, force)
+                    _step_rows(populations, grid, rows, 1, max(1, first - 1), last - 1, z - 1, rates, force)
         for z in range(low + 1, high - 1):
-            _step_row(populations, grid, rows, 1, ny - 1, z, rates, force)
-            _step_row(populations, grid, rows, 1, 0, z, rates, force)
+            _step_rows(populations, grid, rows, 1, ny - 1, ny, z, rates, force)
+            _step_rows(populations, grid, rows, 1, 0, 1, z, rates, force)
     for half in prange(2 * blocks):
         block = np.int64(half)
         low, high = planes * (block // 2) // blocks, planes * (block // 2 + 1) // blocks
         if low < high - 1 or (low < high and block % 2 == 0):
             z = low if block % 2 == 0 else high - 1
-            for y in range(ny):
-                _step_row(populations, grid, rows, 1, y, z, rates, force)
+            _step_rows(populations, grid, rows, 1, 0, ny, z, rates, force)

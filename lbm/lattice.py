@@ -39,6 +39,9 @@ _MIRRORED = np.array([mirrored(axis) for axis in range(3)])
 _ENDS = int(np.sum(C[:, 0] != 0))  # populations that enter a row at one of its ends
 _ALIGN = 32  # bytes a row is aligned to
 _LINE = 64  # bytes in a cache line
+_SPREAD = (
+    17  # lines from slot to slot modulo the page: multiples of 17 modulo 64 fill the cache's sets evenly
+)
 _PAGE = 4096  # addresses equal modulo this compete for the same cache set
 
 
@@ -76,10 +79,9 @@ def layout(shape: tuple[int, int, int], faces: tuple[int, ...], itemsize: int) -
     row = -(-(nx + 2) // align) * align
     if row * itemsize % _PAGE == 0:
         row += align
-    # The 19 slots of a cell should fall on different cache sets: three lines apart, modulo the page.
     page, line = _PAGE // itemsize, _LINE // itemsize
     slot = ny * nz * row
-    slot += (3 * line - slot) % page
+    slot += (_SPREAD * line - slot) % page
     return Grid(nx, ny, nz, row, slot, align, *faces)
 
 
@@ -190,10 +192,10 @@ def row_case(grid, y, z):
 
 
 @njit(forceinline=True)
-def row_starts(grid, rows, parity, case, y, z):
+def row_starts(grid, rows, parity, y, z):
     """The 19 addresses of row (y, z)."""
     base = local(grid, 0, 0, y, z)
-    s = rows.starts[parity, case]
+    s = rows.starts[parity, row_case(grid, y, z)]
     return (
         base + s[0], base + s[1], base + s[2], base + s[3], base + s[4], base + s[5], base + s[6],
         base + s[7], base + s[8], base + s[9], base + s[10], base + s[11], base + s[12],
@@ -202,20 +204,21 @@ def row_starts(grid, rows, parity, case, y, z):
 
 
 @njit(forceinline=True)
-def lend(populations, grid, rows, parity, case, y, z):
-    """Copy what lies beyond the two ends of a row into the pads."""
+def lend(populations, grid, rows, parity, y, z):
+    """Copy what lies beyond the two ends of row (y, z) into the pads, and ask for the next row's."""
     if parity == 1:
-        base = local(grid, 0, 0, y, z)
+        base, case = local(grid, 0, 0, y, z), row_case(grid, y, z)
         for i in range(_ENDS):
             populations[base + rows.pads[case, i]] = populations[base + rows.mates[case, i]]
             prefetch(populations, base + rows.mates[case, i] + grid.row)
+            prefetch(populations, base + rows.pads[case, i] + grid.row)
 
 
 @njit(forceinline=True)
-def give_back(populations, grid, rows, parity, case, y, z):
+def give_back(populations, grid, rows, parity, y, z):
     """Undo :func:`lend` after the loop has written the pads."""
     if parity == 1:
-        base = local(grid, 0, 0, y, z)
+        base, case = local(grid, 0, 0, y, z), row_case(grid, y, z)
         for i in range(_ENDS):
             populations[base + rows.mates[case, i]] = populations[base + rows.pads[case, i]]
 
