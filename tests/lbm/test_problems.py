@@ -40,6 +40,7 @@ def _order(problem, preset, coarse, **options):
         ("shear-wave", "two-relaxation-times", 32),
         ("shear-wave", "dhumieres2002", 16),
         ("poiseuille", "dhumieres2002", 8),
+        ("inclined-poiseuille", "two-relaxation-times", 16),
         ("oscillating-wall", "two-relaxation-times", 8),
         ("oscillating-wall", "dhumieres2002", 8),
         ("womersley", "two-relaxation-times", 8),
