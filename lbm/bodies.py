@@ -24,9 +24,9 @@ from lbm.stencil import OPPOSITE, C, Q, W
 class FixedBody:
     """A body at rest or with a given velocity of its surface; append it to ``Simulation.passes``.
 
-    Parameters: ``solid`` boolean (nx, ny, nz), true where a cell centre lies inside; ``fraction`` (19, nx, ny,
-    nz), the fraction q in (0, 1] of each link that starts in a fluid cell and ends in a solid one (other
-    values are not looked at), or None for half-way; ``velocity`` of the surface, 3 components.
+    Parameters: ``solid`` boolean (nx, ny, nz), true where a cell centre lies inside; ``fraction`` of shape
+    (19, nx, ny, nz), the fraction q in (0, 1] of each link that starts in a fluid cell and ends in a solid
+    one (other values are not looked at), or None for half-way; ``velocity`` of the surface, 3 components.
     Links are followed through the faces of the box as through periodic ones: keep a body two cells away from
     other faces.
     """

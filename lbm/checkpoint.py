@@ -49,7 +49,7 @@ def restore(simulation: Simulation, path: Path | str) -> None:
                 raise InputError(f"{path}: not an lbm checkpoint")
             if file.attrs["version"] != VERSION:
                 raise InputError(
-                    f"{path}: checkpoint of version {file.attrs['version']}, this program reads version {VERSION}; "
+                    f"{path}: checkpoint of version {file.attrs['version']}, this program reads {VERSION}; "
                     "start anew or use the program that wrote it"
                 )
             saved, own = json.loads(file.attrs["description"]), _describe(simulation)

@@ -130,7 +130,8 @@ class _WallPass:
             self._velocity[...] = velocity
         except ValueError:
             raise InputError(
-                f"face {name}: velocity of shape {np.shape(velocity)}; give 3 components or an array {self._shape}"
+                f"face {name}: velocity of shape {np.shape(velocity)}; "
+                f"give 3 components or an array {self._shape}"
             ) from None
         if not np.isfinite(self._velocity).all():
             raise InputError(f"face {name}: velocity is not finite")
@@ -156,7 +157,7 @@ class _OutletPass:
         _open(lattice.populations, lattice.grid, lattice.parity, *self._side, self._density, half_force)
 
 
-@njit(forceinline=True)
+@njit
 def _cell(grid, axis, high, line, n):
     """Cell number (line, n) of a face, the two counted along the other axes in the order x, y, z."""
     if axis == 0:
@@ -166,7 +167,7 @@ def _cell(grid, axis, high, line, n):
     return line, n, (grid.nz - 1 if high else 0)
 
 
-@njit(forceinline=True)
+@njit
 def _returns(grid, k, axis, high, beaten_by, x, y, z):
     """Whether population k comes back to the cell from this face, and not from one that goes before it."""
     if C[k, axis] != (-1 if high else 1):

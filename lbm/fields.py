@@ -81,7 +81,7 @@ def read(lattice: Lattice, force=None) -> tuple[np.ndarray, np.ndarray]:
 
 
 def plane_sums(lattice: Lattice, force=None, density=(0.0, np.inf), top_speed=np.inf) -> np.ndarray:
-    """Per plane z the sums :data:`SUMS` of rho - 1, momentum, kinetic energy, and cells outside the bounds."""
+    """Per plane z the sums :data:`SUMS` of rho - 1, momentum, kinetic energy, and cells out of bounds."""
     sums = np.empty((lattice.grid.nz, len(SUMS)))
     low, high = float(density[0]), float(density[1])
     _sum_planes(
@@ -108,7 +108,7 @@ def write(
 ) -> None:
     """Set populations of density ``rho`` (nx, ny, nz) and velocity ``u`` (3, nx, ny, nz), and parity 0.
 
-    Equilibrium, less half the force, plus the first-order non-equilibrium that belongs to the gradients of u::
+    Equilibrium, less half the force, plus the first-order non-equilibrium of the gradients of u::
 
         f_k^neq = -3 w_k rho tau (c_a c_b - delta_ab/3) d_a u_b,   tau = 3 nu + 1/2
 

@@ -73,7 +73,7 @@ class Grid(NamedTuple):
 
 
 def layout(shape: tuple[int, int, int], faces: tuple[int, ...], itemsize: int) -> Grid:
-    """Strides for a grid: rows aligned, with two pads for the neighbours of their ends; no cache conflicts."""
+    """Strides for a grid: rows aligned, with pads for the neighbours of their ends; no cache conflicts."""
     nx, ny, nz = shape
     align = _ALIGN // itemsize
     row = -(-(nx + 2) // align) * align
@@ -100,9 +100,9 @@ def local(grid, k, x, y, z):
     return grid.origin + k * grid.slot + (z * grid.ny + y) * grid.row + x
 
 
-@njit(forceinline=True)
+@njit
 def _behind(i, c, n, low, high):
-    """Coordinate i - c on an axis of n cells, and what lies there: inside, wrapped (both PERIODIC) or a face."""
+    """Coordinate i - c on an axis of n cells, and what lies there: PERIODIC (also inside) or a face."""
     i -= c
     if i < 0:
         return i + n, low
@@ -111,7 +111,7 @@ def _behind(i, c, n, low, high):
     return i, PERIODIC
 
 
-@njit(forceinline=True)
+@njit
 def remote(grid, k, x, y, z):
     """Address from which an odd step reads population k of cell (x, y, z); see the head of this module."""
     slot = OPPOSITE[k]
@@ -129,13 +129,13 @@ def remote(grid, k, x, y, z):
     return local(grid, slot, i, j, l)
 
 
-@njit(forceinline=True)
+@njit
 def incoming(grid, parity, k, x, y, z):
     """Address of the population k that the next step will read at (x, y, z)."""
     return local(grid, k, x, y, z) if parity == 0 else remote(grid, k, x, y, z)
 
 
-@njit(forceinline=True)
+@njit
 def outgoing(grid, parity, k, x, y, z):
     """Address of the population k that the last step has sent from (x, y, z)."""
     return remote(grid, OPPOSITE[k], x, y, z) if parity == 0 else local(grid, OPPOSITE[k], x, y, z)
@@ -238,7 +238,7 @@ class Lattice:
         self.parity = 0
 
     def slots(self) -> np.ndarray:
-        """View of the slots without the pads, shape (19, nz, ny, nx); at parity 0, the incoming populations."""
+        """View of the slots without the pads, shape (19, nz, ny, nx); at parity 0, what comes in."""
         g = self.grid
         slots = self.populations[g.origin :].reshape(Q, g.slot)[:, : g.nz * g.ny * g.row]
         return slots.reshape(Q, g.nz, g.ny, g.row)[..., : g.nx]

@@ -60,14 +60,15 @@ class DivergenceGuard:
             cell,
             quantity,
             float(value),
-            f" (allowed: density {low:g} to {high:g}, speed up to {self.top_speed:g}); lower the lattice speed, "
+            f" (allowed: density {low:g} to {high:g}, speed up to {self.top_speed:g}); "
+            "lower the lattice speed, "
             f"or raise the viscosity (now {simulation.rates.viscosity:.3g}) by more cells",
         )
 
 
 @dataclass
 class Sums:
-    """Total mass, momentum and kinetic energy against time: ``steps`` and ``rows`` (mass, px, py, pz, energy).
+    """Total mass, momentum and kinetic energy against time: ``steps``, ``rows`` (mass, px, py, pz, energy).
 
     Mass is counted as excess over the fluid at rest, which keeps its round-off small.
     """
@@ -152,7 +153,7 @@ class FieldOutput:
 
 @dataclass
 class Checkpoint:
-    """Saves the simulation to ``path``, replacing the previous one only by a complete file of a sound state."""
+    """Saves the simulation to ``path``; only a complete file of a sound state replaces the previous one."""
 
     every: int
     path: Path | str

@@ -44,7 +44,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Problem:
-    """``case(cells, preset, dtype)`` sets the flow up; ``viscosity`` in lattice units; ``solution`` its source."""
+    """``case(cells, preset, dtype)`` sets the flow up; ``viscosity`` in lattice units."""
 
     name: str
     solution: str

@@ -42,7 +42,8 @@ class Rates:
             value = getattr(self, field.name)
             if not (math.isfinite(value) and 0 < value < 2):
                 raise InputError(
-                    f"relaxation rate s_{field.name} = {value:g}: must lie in (0, 2), that is relaxation time > 0.5; "
+                    f"relaxation rate s_{field.name} = {value:g}: must lie in (0, 2), that is, "
+                    "relaxation time > 0.5; "
                     "raise the viscosity in lattice units (more cells or a higher lattice speed)"
                 )
 
@@ -100,7 +101,7 @@ class Rates:
         )
 
     def scaled(self, dtype) -> tuple:
-        """Factors of :func:`lbm.collision.collide`: s/|M|^2 of each kind, then (1 - s/2) c/|M|^2 of Guo's force.
+        """Factors of :func:`lbm.collision.collide`: s/|M|^2 by kind, then (1 - s/2) c/|M|^2 of Guo's force.
 
         c is the moment of the force per unit of the product of velocity and force that the collision forms.
         """

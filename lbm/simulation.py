@@ -236,7 +236,8 @@ def _checked_threads(threads: int | None) -> int:
     threads = _checked_count("threads", threads)
     if not 1 <= threads <= available:
         raise InputError(
-            f"threads = {threads}: between 1 and {available} (of {os.cpu_count()} cores; NUMBA_NUM_THREADS raises it)"
+            f"threads = {threads}: between 1 and {available} "
+            f"(of {os.cpu_count()} cores; NUMBA_NUM_THREADS raises it)"
         )
     return threads
 
