@@ -83,6 +83,6 @@ def compiled_count() -> int:
     return sum(sum(k.stats.cache_misses.values()) for k in _kernels)
 
 
-def loaded_count() -> int:
-    """Kernel specialisations read from the cache in this process."""
-    return sum(sum(k.stats.cache_hits.values()) for k in _kernels)
+def is_empty() -> bool:
+    """Whether this version of the package has not compiled anything on this machine yet."""
+    return not any(directory().glob("*.nbc"))

@@ -8,10 +8,10 @@ from numba import njit, prange
 from lbm.cache import kernel
 from lbm.collision import collide
 from lbm.lattice import give_back, lend, row_starts
-from lbm.memory import load_cell, prefetch_cell, store_cell
+from lbm.memory import line_length, load_cell, prefetch_cell, store_cell
 
-_LINES, _AHEAD = 2, 6
-"""A row is swept in strips of this many cache lines, and asks for memory this many lines ahead."""
+_AHEAD = 6
+"""How many cache lines ahead a row asks for its memory (benchmarks/README.md)."""
 
 
 @njit(forceinline=True)
@@ -23,10 +23,17 @@ def exchange_pairs(f):
     )  # fmt: skip
 
 
+@njit(forceinline=True)
+def _step_cell(populations, starts, x, rates, force):
+    f = collide(load_cell(populations, starts, x), rates, force)
+    store_cell(populations, starts, x, exchange_pairs(f))
+
+
 @njit(error_model="numpy", fastmath={"contract"})
 def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
     """Collide and stream rows first to last - 1 of plane z in place."""
-    line = 64 // populations.itemsize
+    line = line_length(populations)
+    whole = grid.nx - grid.nx % line
     if first < last:
         lend(populations, grid, rows, parity, first, z)
     for y in range(first, last):
@@ -34,13 +41,14 @@ def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
             # A row ahead: a vector load right behind the store of one of its elements would stall.
             lend(populations, grid, rows, parity, y + 1, z)
         starts = row_starts(grid, rows, parity, y, z)
-        for strip in range(0, grid.nx, _LINES * line):
+        for first_x in range(0, whole, line):
             # What lies beyond the end of the row is the next row, so asking past the end is of use.
-            for i in range(_LINES):
-                prefetch_cell(populations, starts, strip + (_AHEAD + i) * line)
-            for x in range(strip, min(grid.nx, strip + _LINES * line)):
-                f = collide(load_cell(populations, starts, x), rates, force)
-                store_cell(populations, starts, x, exchange_pairs(f))
+            prefetch_cell(populations, starts, first_x + _AHEAD * line)
+            # a constant length: compiled to vectors without a remainder
+            for i in range(line):
+                _step_cell(populations, starts, first_x + i, rates, force)
+        for x in range(whole, grid.nx):
+            _step_cell(populations, starts, x, rates, force)
         give_back(populations, grid, rows, parity, y, z)
 
 

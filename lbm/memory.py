@@ -100,3 +100,14 @@ def prefetch(typingctx, array, index):
         return context.get_dummy_value()
 
     return types.void(array, index), codegen
+
+
+@intrinsic
+def line_length(typingctx, array):
+    """Elements of ``array`` in a cache line of 64 bytes, as a constant of the compiled code."""
+
+    def codegen(context, builder, signature, args):
+        size = context.get_abi_sizeof(context.get_data_type(signature.args[0].dtype))
+        return context.get_constant(types.int64, 64 // size)
+
+    return types.int64(array), codegen

@@ -40,9 +40,13 @@ class Progress:
         if self._bar is not None:
             self._bar.stop()
 
+    def compiling(self) -> None:
+        """Say that the first run of a new version will take longer."""
+        self._console.print("compiling kernels, once for this version ...")
+
     def compiled(self, seconds: float) -> None:
         """Say that kernels had to be compiled."""
-        self._console.print(f"compiling kernels took {seconds:.1f} s; later runs load them from the cache")
+        self._console.print(f"compiling took {seconds:.1f} s; later runs load the kernels from the cache")
 
     def stop(self, step: int) -> list[int]:
         """Where to stop and refresh, if anything is shown."""

@@ -149,9 +149,11 @@ class Simulation:
         threads_before = numba.get_num_threads()
         numba.set_num_threads(self.threads)
         try:
-            compiled_before = cache.compiled_count()
-            seconds = self.compile()
             with Progress(progress, steps, int(np.prod(self.shape))) as shown:
+                if cache.is_empty():
+                    shown.compiling()
+                compiled_before = cache.compiled_count()
+                seconds = self.compile()
                 if cache.compiled_count() > compiled_before:
                     shown.compiled(seconds)
                 if self.steps == 0:
