@@ -74,7 +74,16 @@ def _describe(simulation: Simulation) -> dict:
         "shape": list(simulation.shape),
         "dtype": simulation.dtype.name,
         "rates": {name: getattr(simulation.rates, name) for name in Rates.__dataclass_fields__},
+        "force": _plain(simulation.given_force),
         "faces": {
-            name: type(face).__name__ for name, face in zip(boundaries.FACES, simulation.faces, strict=True)
+            name: {"kind": type(face).__name__, **{key: _plain(value) for key, value in vars(face).items()}}
+            for name, face in zip(boundaries.FACES, simulation.faces, strict=True)
         },
     }
+
+
+def _plain(value):
+    """A number, vector or None in JSON's terms; of a function no more than that it is one."""
+    if value is None or callable(value):
+        return None if value is None else "function of time"
+    return np.asarray(value, dtype=float).tolist()

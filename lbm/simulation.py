@@ -20,6 +20,7 @@ from lbm.rates import Rates
 from lbm.stencil import Q
 
 _SMALLEST = 4
+_CELLS_WORTH_A_THREAD = 16_384  # fewer are done before another thread has woken
 _TILE_BYTES = 4 * 2**20
 """What three planes of a strip of rows may take when two steps are made in one sweep."""
 
@@ -39,7 +40,7 @@ class Simulation:
         "no-slip", "free-slip", "outlet", or a record of :mod:`lbm.faces`.
     force : force density, 3 components, or a function of time giving them (called half-way between steps).
     dtype : float64 or float32; populations are stored as deviations from rest.
-    threads : default all; results do not depend on it.
+    threads : default all that the size of the box is worth; results do not depend on it.
 
     Cell (i, j, k) has its centre at (i + 1/2, j + 1/2, k + 1/2); walls lie on the faces of the box.
     """
@@ -59,7 +60,7 @@ class Simulation:
         self.dtype = np.dtype(dtype)
         if self.dtype not in (np.dtype(np.float64), np.dtype(np.float32)):
             raise InputError(f"dtype {self.dtype}: use float64 or float32")
-        self.threads = _checked_threads(threads)
+        self.threads = _checked_threads(threads, int(np.prod(self.shape)))
         self.faces = _resolve(faces)
         self.given_force = force
         self.steps = 0
@@ -231,10 +232,10 @@ def _checked_shape(shape) -> tuple[int, int, int]:
     return nx, ny, nz
 
 
-def _checked_threads(threads: int | None) -> int:
+def _checked_threads(threads: int | None, cells: int) -> int:
     available = numba.config.NUMBA_NUM_THREADS
     if threads is None:
-        return available
+        return max(1, min(available, cells // _CELLS_WORTH_A_THREAD))
     threads = _checked_count("threads", threads)
     if not 1 <= threads <= available:
         raise InputError(

@@ -80,6 +80,8 @@ def test_other_version_is_refused(tmp_path):
         ({"dtype": np.float32}, "dtype"),
         ({"rates": Rates.bgk(0.02)}, "rates"),
         ({"faces": {"x": "free-slip"}}, "faces"),
+        ({"faces": {"x": "no-slip", "z-": "no-slip", "z+": NoSlip((0.02, 0, 0))}}, "faces"),
+        ({"force": (2e-5, 0, 0)}, "force"),
     ],
 )
 def test_another_simulation_is_refused_and_left_alone(tmp_path, changes, named):
