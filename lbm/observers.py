@@ -11,6 +11,7 @@ import numpy as np
 
 from lbm import fields
 from lbm.errors import DivergenceError, InputError
+from lbm.scales import Scales
 from lbm.vtkhdf import write_image
 
 if TYPE_CHECKING:
@@ -133,11 +134,12 @@ class Average:
 
 @dataclass
 class FieldOutput:
-    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView."""
+    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView, in SI if ``scales`` are given."""
 
     every: int
     directory: Path | str
     stem: str = "flow"
+    scales: Scales | None = None
     written: list[Path] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -147,7 +149,9 @@ class FieldOutput:
         """Write one file."""
         path = Path(self.directory) / f"{self.stem}_{simulation.steps:08d}.vtkhdf"
         rho, u = simulation.fields()
-        write_image(path, {"density": rho, "velocity": u})
+        scales = self.scales or Scales(1.0, 1.0)
+        written = {"density": scales.si(rho, "density"), "velocity": scales.si(u, "velocity")}
+        write_image(path, written, spacing=scales.cell_m)
         self.written.append(path)
 
 

@@ -162,15 +162,8 @@ class Simulation:
                 end = self.steps + steps
                 while self.steps < end:
                     before = self.steps
-                    self._advance(
-                        min(
-                            [
-                                end,
-                                *(before + w.every - before % w.every for w in watchers),
-                                *shown.stop(before),
-                            ]
-                        )
-                    )
+                    due = (before + w.every - before % w.every for w in watchers)
+                    self._advance(min([end, *due, *shown.stop(before)]))
                     _call(watchers, self)
                     shown.advance(self.steps - before)
                 if guard is not None:

@@ -1,4 +1,4 @@
-"""The picture of the README's solver section: a lid-driven cube, speed and streamlines in its middle plane."""
+"""The README's picture of the solver: a lid-driven cube, speed and streamlines in its middle plane."""
 
 from pathlib import Path
 
