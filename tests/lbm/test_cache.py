@@ -27,7 +27,7 @@ def _run(root, caches):
     return (*json.loads(done.stdout), done.stderr)
 
 
-def test_editing_a_helper_compiles_anew(tmp_path):
+def test_editing_an_inlined_function_compiles_anew(tmp_path):
     package = tmp_path / "lbm"
     shutil.copytree(Path(lbm.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     first_hash, compiled, first, said = _run(tmp_path, tmp_path / "caches")
@@ -37,11 +37,11 @@ def test_editing_a_helper_compiles_anew(tmp_path):
     assert (again_hash, compiled, again) == (first_hash, 0, first)
     assert "compiling" not in said
     # the collision is inlined in the kernels, but stands in another file
-    helper = package / "collision.py"
-    source = helper.read_text()
+    inlined = package / "collision.py"
+    source = inlined.read_text()
     edited = source.replace("one / (one + drho)", "one")
     assert edited != source
-    helper.write_text(edited)
+    inlined.write_text(edited)
     edited_hash, compiled, changed, _ = _run(tmp_path, tmp_path / "caches")
     assert edited_hash != first_hash
     assert compiled > 0
