@@ -1,5 +1,24 @@
-"""D3Q19 lattice-Boltzmann solver: the place of the reference solver, which this version does not yet hold.
+"""A compact lattice-Boltzmann solver: D3Q19, multiple relaxation times, updated in place.
 
-The package will know nothing of :mod:`restitution`: closures come to it as plain callables, and its runs
-leave it as plain tables of the same schema as the measured data.
+Everything is in lattice units (cell, time step, rest density 1); :mod:`lbm.scales` leads to SI and back::
+
+    from lbm import Rates, Simulation
+
+    flow = Simulation((64, 64, 64), Rates.two_relaxation_times(viscosity=0.02), faces={"z": "no-slip"})
+    flow.set_flow(velocity=...)
+    flow.run(1000, progress=True)
+    rho, u = flow.fields()
+
+The package knows nothing of :mod:`restitution`.
 """
+
+from lbm.errors import DivergenceError, InputError, OutputError, OutsideRangeWarning
+from lbm.faces import FreeSlip, Inlet, NoSlip, Outlet, Periodic
+from lbm.rates import Rates
+from lbm.scales import FlowScales, Scales
+from lbm.simulation import Simulation
+
+__all__ = [
+    "DivergenceError", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip", "Outlet", "OutputError",
+    "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
+]  # fmt: skip

@@ -3,26 +3,35 @@
 import re
 from pathlib import Path
 
+import pytest
+
 from restitution.cli import build_parser
 
 README = (Path(__file__).parent.parent / "README.md").read_text()
 
 
-def test_python_example_runs(capsys):
-    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+PRINTED = (
+    r"(St +\d+\.\d: measured 0\.\d\d \+- 0\.\d\d, Legendre et al\. 0\.\d\d\n){4}",
+    r"viscosity measured / set: (0\.999|1\.000)\d\d\n",
+)
+EXAMPLES = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+
+
+@pytest.mark.parametrize(("code", "printed"), list(zip(EXAMPLES, PRINTED, strict=True)))
+def test_python_examples_run(code, printed, capsys):
     exec(compile(code, "README.md", "exec"), {})
-    lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 4
-    assert all(
-        re.match(r"St +\d+\.\d: measured 0\.\d\d \+- 0\.\d\d, Legendre et al\. 0\.\d\d$", line) for line in lines
-    )
+    assert re.fullmatch(printed, capsys.readouterr().out)
 
 
 def test_every_runtime_dependency_has_its_line():
     import tomllib
 
     project = tomllib.loads((Path(__file__).parent.parent / "pyproject.toml").read_text())["project"]
-    wanted = [*project["dependencies"], *project["optional-dependencies"]["dev"]]
+    wanted = [
+        *project["dependencies"],
+        *project["optional-dependencies"]["dev"],
+        *project["optional-dependencies"]["bench"],
+    ]
     table = README.split("## Dependencies")[1]
     for requirement in wanted:
         assert re.match(r"[a-z0-9]+", requirement)[0] in table

@@ -1,0 +1,88 @@
+"""Compilation of kernels, and their cache on disk.
+
+Numba's own cache looks at the one file in which a kernel stands, so a kernel would outlive a change in the
+collision it inlines. Here the key is a hash of all sources of the package: any edit compiles anew.
+The cache lies in ``$LBM_CACHE_DIR``, else under the user's cache directory (``$XDG_CACHE_HOME``).
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+from pathlib import Path
+
+from numba import njit
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+
+_PACKAGE = Path(__file__).parent
+_kernels: list = []
+
+
+@functools.cache
+def source_hash() -> str:
+    """SHA-256 over names and contents of the package's Python files, first 16 hexadecimal digits."""
+    digest = hashlib.sha256()
+    for path in sorted(_PACKAGE.rglob("*.py")):
+        digest.update(str(path.relative_to(_PACKAGE)).encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def directory() -> Path:
+    """Where this version of the package keeps its compiled kernels."""
+    if chosen := os.environ.get("LBM_CACHE_DIR"):
+        root = Path(chosen)
+    else:
+        root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "lbm"
+    return root / source_hash()
+
+
+class _Locator(_CacheLocator):
+    def __init__(self, py_func, py_file):
+        self._py_file = py_file
+        self._line = py_func.__code__.co_firstlineno
+
+    @classmethod
+    def from_function(cls, py_func, py_file):
+        return cls(py_func, py_file)
+
+    def get_cache_path(self):
+        return str(directory())
+
+    def get_source_stamp(self):
+        return source_hash()
+
+    def get_disambiguator(self):
+        return str(self._line)
+
+
+class _Implementation(CompileResultCacheImpl):
+    _locator_classes = [_Locator]  # noqa: RUF012
+
+
+class _Cache(FunctionCache):
+    _impl_class = _Implementation
+
+
+def kernel(function=None, *, parallel=True):
+    """Compile ``function`` on first call and keep the result on disk.
+
+    ``error_model="numpy"``: a division by zero gives inf and no branch, which would stop vectorisation.
+    ``contract`` allows fused multiply-add and assumes nothing about NaN or infinity.
+    """
+    if function is None:
+        return functools.partial(kernel, parallel=parallel)
+    compiled = njit(function, parallel=parallel, nogil=True, error_model="numpy", fastmath={"contract"})
+    compiled._cache = _Cache(function)
+    _kernels.append(compiled)
+    return compiled
+
+
+def compiled_count() -> int:
+    """Kernel specialisations compiled in this process, as opposed to read from the cache."""
+    return sum(sum(k.stats.cache_misses.values()) for k in _kernels)
+
+
+def is_empty() -> bool:
+    """Whether this version of the package has not compiled anything on this machine yet."""
+    return not any(directory().glob("*.nbc"))

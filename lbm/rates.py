@@ -1,0 +1,122 @@
+"""Relaxation rates of the moments, with presets named after their source.
+
+Viscosities follow from d'Humieres et al. (2002), with c_s^2 = 1/3::
+
+    nu = (1/s_nu - 1/2)/3          (shear)
+    zeta = 2/9 (1/s_e - 1/2)       (bulk)
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from lbm.errors import InputError
+
+
+def _rate(viscosity: float, factor: float, name: str) -> float:
+    if not (math.isfinite(viscosity) and viscosity > 0):
+        raise InputError(f"{name} = {viscosity:g} in lattice units: must be finite and greater than 0")
+    return 1.0 / (viscosity / factor + 0.5)
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Relaxation rates, each in (0, 2).
+
+    ``nu`` stress p (sets the shear viscosity), ``e`` energy (bulk viscosity), ``eps`` energy square, ``q``
+    energy flux, ``pi`` fourth-order stress, ``m`` third-order antisymmetric moments.
+    """
+
+    nu: float
+    e: float
+    eps: float
+    q: float
+    pi: float
+    m: float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not (math.isfinite(value) and 0 < value < 2):
+                raise InputError(
+                    f"relaxation rate s_{field.name} = {value:g}: must lie in (0, 2), that is, "
+                    "relaxation time > 0.5; "
+                    "raise the viscosity in lattice units (more cells or a higher lattice speed)"
+                )
+
+    @classmethod
+    def dhumieres2002(cls, viscosity: float) -> Rates:
+        """Rates optimised for linear stability by d'Humieres et al. (2002), p. 445.
+
+        s_e 1.19, s_eps = s_pi 1.4, s_q 1.2, s_m 1.98. The equilibrium stays the second-order one (their
+        w_eps = 3, w_epsj = -11/2, w_xx = -1/2).
+        """
+        return cls(nu=_rate(viscosity, 1 / 3, "viscosity"), e=1.19, eps=1.4, q=1.2, pi=1.4, m=1.98)
+
+    @classmethod
+    def two_relaxation_times(cls, viscosity: float, magic: float = 3 / 16) -> Rates:
+        """Even moments relax with s_nu, odd ones so that (1/s_nu - 1/2)(1/s_odd - 1/2) = ``magic``.
+
+        3/16 places a half-way bounce-back wall of Poiseuille flow along the grid exactly at half a cell for
+        every viscosity (Ginzburg, Verhaeghe & d'Humieres, Commun. Comput. Phys. 3 (2008) 427).
+        """
+        even = _rate(viscosity, 1 / 3, "viscosity")
+        if not (math.isfinite(magic) and magic > 0):
+            raise InputError(f"magic parameter = {magic:g}: must be greater than 0; 3/16 is the usual choice")
+        odd = 1.0 / (magic / (1 / even - 0.5) + 0.5)
+        return cls(nu=even, e=even, eps=even, q=odd, pi=even, m=odd)
+
+    @classmethod
+    def bulk(cls, viscosity: float, bulk_viscosity: float, magic: float = 3 / 16) -> Rates:
+        """:meth:`two_relaxation_times` with the bulk viscosity chosen separately (d'Humieres et al. 2002)."""
+        base = cls.two_relaxation_times(viscosity, magic)
+        e = _rate(bulk_viscosity, 2 / 9, "bulk viscosity")
+        return cls(nu=base.nu, e=e, eps=base.eps, q=base.q, pi=base.pi, m=base.m)
+
+    @classmethod
+    def bgk(cls, viscosity: float) -> Rates:
+        """One rate for all (Qian, d'Humieres & Lallemand 1992); for comparison."""
+        s = _rate(viscosity, 1 / 3, "viscosity")
+        return cls(s, s, s, s, s, s)
+
+    @property
+    def viscosity(self) -> float:
+        """Kinematic shear viscosity in lattice units."""
+        return (1 / self.nu - 0.5) / 3
+
+    @property
+    def bulk_viscosity(self) -> float:
+        """Kinematic bulk viscosity in lattice units."""
+        return (1 / self.e - 0.5) * 2 / 9
+
+    def diagonal(self) -> np.ndarray:
+        """Rates in the order of :data:`lbm.moments.NAMES`; conserved moments have rate 0."""
+        s = self
+        odd = (0.0, s.q)
+        return np.array(
+            [0.0, s.e, s.eps, *odd, *odd, *odd, s.nu, s.pi, s.nu, s.pi, s.nu, s.nu, s.nu, s.m, s.m, s.m]
+        )
+
+    def scaled(self, dtype) -> tuple:
+        """Factors of :func:`lbm.collision.collide`: s/|M|^2 by kind, then (1 - s/2) c/|M|^2 of Guo's force.
+
+        c is the moment of the force per unit of the product of velocity and force that the collision forms.
+        """
+        kinds = [
+            (self.e, 2394, 38), (self.eps, 252, 11), (self.q, 40, 2 / 3), (self.nu, 36, 2), (self.nu, 12, 2),
+            (self.nu, 4, 1), (self.pi, 72, 1), (self.pi, 24, 1), (self.m, 8, None),
+        ]  # fmt: skip
+        relax = [s / norm for s, norm, _ in kinds]
+        push = [(1 - s / 2) * c / norm for s, norm, c in kinds if c is not None]
+        return tuple(np.dtype(dtype).type(v) for v in (*relax, *push, 1 / 10))
+
+
+PRESETS = {
+    "two-relaxation-times": Rates.two_relaxation_times,
+    "dhumieres2002": Rates.dhumieres2002,
+    "bgk": Rates.bgk,
+}
+"""Presets that follow from the viscosity alone, by name."""

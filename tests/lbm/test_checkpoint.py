@@ -1,0 +1,123 @@
+import resource
+import signal
+
+import h5py
+import numpy as np
+import pytest
+
+from lbm import InputError, NoSlip, OutputError, Rates, Simulation
+
+RATES = Rates.two_relaxation_times(0.02)
+SHAPE = (9, 8, 10)
+
+
+def _flow(threads=None, **changes):
+    arguments = {
+        "shape": SHAPE,
+        "rates": RATES,
+        "faces": {"x": "no-slip", "z-": "no-slip", "z+": NoSlip((0.03, 0, 0))},
+        "force": (1e-5, 0, 0),
+        **changes,
+    }
+    flow = Simulation(**arguments, threads=threads)
+    flow.set_flow(1.0, 0.02 * np.random.default_rng(7).standard_normal((3, *flow.shape)))
+    return flow
+
+
+@pytest.mark.parametrize("saved_after", [10, 11])
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_restart_is_bit_identical_with_any_number_of_threads(tmp_path, saved_after, dtype):
+    path = tmp_path / "state.h5"
+    whole = _flow(threads=2, dtype=dtype)
+    whole.run(saved_after)
+    whole.save(path)
+    whole.run(13)
+    for threads in (1, 2):
+        again = _flow(threads=threads, dtype=dtype)
+        again.restore(path)
+        assert again.steps == saved_after
+        again.run(13)
+        assert again.steps == whole.steps
+        assert (again.lattice.slots() == whole.lattice.slots()).all()
+
+
+def test_truncated_file_is_refused(tmp_path):
+    path = tmp_path / "state.h5"
+    flow = _flow()
+    flow.save(path)
+    content = path.read_bytes()
+    for length in (0, 100, len(content) // 2, len(content) - 8):
+        path.write_bytes(content[:length])
+        with pytest.raises(InputError, match=r"state\.h5"):
+            flow.restore(path)
+
+
+def test_damaged_data_are_refused(tmp_path):
+    path = tmp_path / "state.h5"
+    flow = _flow()
+    flow.save(path)
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 0xFF
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="damaged"):
+        flow.restore(path)
+
+
+def test_other_version_is_refused(tmp_path):
+    path = tmp_path / "state.h5"
+    flow = _flow()
+    flow.save(path)
+    with h5py.File(path, "r+") as file:
+        file.attrs["version"] = 99
+    with pytest.raises(InputError, match="version 99"):
+        flow.restore(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"shape": (9, 8, 11)}, "shape"),
+        ({"dtype": np.float32}, "dtype"),
+        ({"rates": Rates.bgk(0.02)}, "rates"),
+        ({"faces": {"x": "free-slip"}}, "faces"),
+        ({"faces": {"x": "no-slip", "z-": "no-slip", "z+": NoSlip((0.02, 0, 0))}}, "faces"),
+        ({"force": (2e-5, 0, 0)}, "force"),
+    ],
+)
+def test_another_simulation_is_refused_and_left_alone(tmp_path, changes, named):
+    path = tmp_path / "state.h5"
+    _flow().save(path)
+    other = _flow(**changes)
+    before = other.lattice.slots().copy()
+    with pytest.raises(InputError, match=named):
+        other.restore(path)
+    assert (other.lattice.slots() == before).all()
+
+
+def test_missing_and_foreign_files_are_refused(tmp_path):
+    flow = _flow()
+    with pytest.raises(InputError, match="no such"):
+        flow.restore(tmp_path / "none.h5")
+    (tmp_path / "text.h5").write_text("not HDF5")
+    with pytest.raises(InputError, match=r"text\.h5"):
+        flow.restore(tmp_path / "text.h5")
+
+
+def test_full_disk_leaves_the_previous_checkpoint(tmp_path):
+    path = tmp_path / "state.h5"
+    flow = _flow()
+    flow.save(path)
+    before = path.read_bytes()
+    flow.run(4)
+    # a limit on the size of files stands for the full disk: writes fail part-way
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
+    try:
+        with pytest.raises(OutputError, match="intact"):
+            flow.save(path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, handler)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in tmp_path.iterdir()] == ["state.h5"]
