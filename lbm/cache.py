@@ -10,6 +10,8 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
+import pickle
+import warnings
 from pathlib import Path
 
 from numba import njit
@@ -61,7 +63,31 @@ class _Implementation(CompileResultCacheImpl):
 
 
 class _Cache(FunctionCache):
+    """Without a cache that can be used, kernels are compiled anew and kept in memory only; that is said once."""
+
     _impl_class = _Implementation
+
+    def load_overload(self, sig, target_context):
+        try:
+            return super().load_overload(sig, target_context)
+        except (OSError, EOFError, pickle.UnpicklingError, ValueError) as error:
+            _warn(f"cannot be read ({error or type(error).__name__}); delete it to mend that")
+            return None
+
+    def save_overload(self, sig, data):
+        try:
+            super().save_overload(sig, data)
+        except (OSError, EOFError, pickle.UnpicklingError, ValueError) as error:
+            _warn(f"cannot be written ({error or type(error).__name__}); set LBM_CACHE_DIR to a folder that can")
+
+
+class CacheWarning(UserWarning):
+    """Compiled kernels are not kept on disk, or those there are of no use: every process compiles them again."""
+
+
+@functools.cache
+def _warn(what: str) -> None:
+    warnings.warn(f"kernel cache {directory()} {what}; kernels are compiled anew", CacheWarning, stacklevel=2)
 
 
 def kernel(function=None, *, parallel=True):
@@ -84,5 +110,5 @@ def compiled_count() -> int:
 
 
 def is_empty() -> bool:
-    """Whether this version of the package has not compiled anything on this machine yet."""
-    return not any(directory().glob("*.nbc"))
+    """Whether this version of the package has not compiled its sweeps on this machine yet."""
+    return not any(directory().glob("kernels.sweep*.nbc"))

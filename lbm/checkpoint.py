@@ -58,11 +58,16 @@ def restore(simulation: Simulation, path: Path | str) -> None:
                     raise InputError(f"{path}: saved with {name} = {saved.get(name)}, this simulation has {value}")
             slots = file["slots"][...]
             steps, parity = int(file.attrs["steps"]), int(file.attrs["parity"])
-    except (OSError, KeyError, json.JSONDecodeError) as error:
+    except PermissionError as error:
+        raise InputError(f"{path}: may not be read ({error.strerror})") from error
+    except (OSError, KeyError, TypeError, json.JSONDecodeError) as error:
         raise InputError(f"{path}: damaged or truncated checkpoint ({error}); use an earlier one") from error
+    own_slots = simulation.lattice.slots()
+    if slots.shape != own_slots.shape or slots.dtype != own_slots.dtype or steps < 0 or parity not in (0, 1):
+        raise InputError(f"{path}: damaged checkpoint ({slots.shape}, step {steps}); use an earlier one")
     if not np.isfinite(slots).all():
         raise InputError(f"{path}: holds values that are not finite; use an earlier one")
-    simulation.lattice.slots()[...] = slots
+    own_slots[...] = slots
     simulation.lattice.parity, simulation.steps = parity, steps
 
 

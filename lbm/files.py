@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 from collections.abc import Iterator
@@ -45,8 +46,13 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
     ``path`` is then still there, unchanged.
     """
     path = Path(path)
+    if not path.name:
+        raise OutputError(f"{str(path)!r} names no file")
+    path = path.resolve()  # through links, which stay what they are
     aside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
+        if path.exists() and not path.is_file():
+            raise FileExistsError(errno.EEXIST, "is not a regular file")
         path.parent.mkdir(parents=True, exist_ok=True)
         with _Sink(aside, "w+") as sink:
             with h5py.File(sink, "w") as file:
@@ -60,4 +66,5 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
             f"{path}: not written ({error}); a file of that name that was there is intact"
         ) from error
     finally:
-        aside.unlink(missing_ok=True)
+        if aside.parent.is_dir() and len(os.fsencode(aside.name)) <= 255:
+            aside.unlink(missing_ok=True)

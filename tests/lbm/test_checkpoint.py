@@ -121,3 +121,28 @@ def test_full_disk_leaves_the_previous_checkpoint(tmp_path):
         signal.signal(signal.SIGXFSZ, handler)
     assert path.read_bytes() == before
     assert [entry.name for entry in tmp_path.iterdir()] == ["state.h5"]
+
+
+def test_outputs_follow_links_and_name_what_cannot_be_written(tmp_path):
+    flow = Simulation((8, 8, 8), Rates.two_relaxation_times(0.1))
+    flow.set_flow()
+    target, link = tmp_path / "kept.h5", tmp_path / "link.h5"
+    flow.save(target)
+    link.symlink_to(target)
+    flow.save(link)
+    assert link.is_symlink()
+    (tmp_path / "file").touch()
+    for bad in (tmp_path / "file" / "c.h5", tmp_path, tmp_path / ("x" * 300), ""):
+        with pytest.raises(OutputError):
+            flow.save(bad)
+
+
+@pytest.mark.parametrize(("name", "value"), [("steps", -1), ("parity", 7)])
+def test_an_impossible_state_is_refused(tmp_path, name, value):
+    flow = Simulation((8, 8, 8), Rates.two_relaxation_times(0.1))
+    flow.set_flow()
+    flow.save(tmp_path / "c.h5")
+    with h5py.File(tmp_path / "c.h5", "a") as file:
+        file.attrs[name] = value
+    with pytest.raises(InputError, match="damaged"):
+        flow.restore(tmp_path / "c.h5")
