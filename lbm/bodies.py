@@ -2,10 +2,10 @@
 
 Linear interpolation (Bouzidi, Firdaouss & Lallemand, Phys. Fluids 13 (2001) 3452), second order for curved
 and inclined surfaces. With q the fraction of the link from the fluid cell x along c_k to the surface, k' the
-opposite of k, u_w the velocity of the surface, and f* populations as sent by the last step::
+opposite of k, u_w the velocity of the surface, rho the density at x, f* populations as sent by the last step::
 
-    f_k'(x) = 2q f*_k(x) + (1 - 2q) f*_k(x - c_k) + 6 w_k c_k'.u_w            q < 1/2
-    f_k'(x) = (f*_k(x) + (2q - 1) f*_k'(x) + 6 w_k c_k'.u_w) / (2q)           q >= 1/2
+    f_k'(x) = 2q f*_k(x) + (1 - 2q) f*_k(x - c_k) + 6 w_k rho c_k'.u_w        q < 1/2
+    f_k'(x) = (f*_k(x) + (2q - 1) f*_k'(x) + 6 w_k rho c_k'.u_w) / (2q)       q >= 1/2
 
 The bulk kernel runs over the solid cells as well; what it computes there never reaches the fluid.
 """
@@ -55,7 +55,10 @@ class FixedBody:
         self.shape = solid.shape
         self.links = np.column_stack([np.concatenate(cells), np.concatenate(directions)]).astype(np.int64)
         self.fraction = np.concatenate(q)
-        self.push = 6 * W[self.links[:, 3]] * -(C[self.links[:, 3]] @ np.asarray(velocity, dtype=float))
+        u = np.asarray(velocity, dtype=float)
+        if u.shape != (3,) or not np.isfinite(u).all():
+            raise InputError(f"body: velocity {velocity!r}; give 3 finite components")
+        self.push = -6 * W[self.links[:, 3]] * (C[self.links[:, 3]] @ u)
 
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Correct the populations that come back from the surface."""
@@ -71,9 +74,15 @@ def _bounce(populations, grid, parity, links, fraction, push):
         back = OPPOSITE[k]
         q = fraction[link]
         sent = populations[outgoing(grid, parity, k, x, y, z)]
+        add = push[link]
+        if add != 0:
+            rho = 1.0
+            for i in range(Q):
+                rho += populations[outgoing(grid, parity, i, x, y, z)]
+            add *= rho
         if q < 0.5:
-            value = 2 * q * sent + (1 - 2 * q) * populations[incoming(grid, parity, k, x, y, z)] + push[link]
+            value = 2 * q * sent + (1 - 2 * q) * populations[incoming(grid, parity, k, x, y, z)] + add
         else:
             sent_back = populations[outgoing(grid, parity, back, x, y, z)]
-            value = (sent + (2 * q - 1) * sent_back + push[link]) / (2 * q)
+            value = (sent + (2 * q - 1) * sent_back + add) / (2 * q)
         populations[incoming(grid, parity, back, x, y, z)] = value

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import operator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -27,9 +29,25 @@ class Observer(Protocol):
         """Look at ``simulation``."""
 
 
+def checked(observers: Iterable[Observer]) -> list[Observer]:
+    """``observers`` as a list; :class:`InputError` for what is no list or holds what cannot observe."""
+    if not isinstance(observers, Iterable):
+        raise InputError(f"observers = {observers!r}: give a list of observers, also of one")
+    found = list(observers)
+    for observer in found:
+        if isinstance(observer, type) or not callable(observer) or not hasattr(observer, "every"):
+            raise InputError(f"{observer!r}: no observer; give an object with ``every`` (steps) and a call")
+        _check_every(observer.every)
+    return found
+
+
 def _check_every(every: int) -> None:
-    if every < 1:
-        raise InputError(f"every = {every}: must be at least 1 step")
+    try:
+        if operator.index(every) >= 1:
+            return
+    except TypeError:
+        pass
+    raise InputError(f"every = {every!r}: must be a whole number of steps, at least 1")
 
 
 @dataclass(frozen=True)

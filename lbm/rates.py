@@ -9,6 +9,7 @@ Viscosities follow from d'Humieres et al. (2002), with c_s^2 = 1/3::
 from __future__ import annotations
 
 import math
+import numbers
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -16,8 +17,15 @@ import numpy as np
 from lbm.errors import InputError
 
 
+def _number(value, name: str) -> float:
+    """``value`` itself, if it is a number."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise InputError(f"{name} = {value!r}: must be a number")
+    return value
+
+
 def _rate(viscosity: float, factor: float, name: str) -> float:
-    if not (math.isfinite(viscosity) and viscosity > 0):
+    if not (math.isfinite(_number(viscosity, name)) and viscosity > 0):
         raise InputError(f"{name} = {viscosity:g} in lattice units: must be finite and greater than 0")
     return 1.0 / (viscosity / factor + 0.5)
 
@@ -39,7 +47,7 @@ class Rates:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
+            value = _number(getattr(self, field.name), f"relaxation rate s_{field.name}")
             if not (math.isfinite(value) and 0 < value < 2):
                 raise InputError(
                     f"relaxation rate s_{field.name} = {value:g}: must lie in (0, 2), that is, "
@@ -64,7 +72,7 @@ class Rates:
         every viscosity (Ginzburg, Verhaeghe & d'Humieres, Commun. Comput. Phys. 3 (2008) 427).
         """
         even = _rate(viscosity, 1 / 3, "viscosity")
-        if not (math.isfinite(magic) and magic > 0):
+        if not (math.isfinite(_number(magic, "magic parameter")) and magic > 0):
             raise InputError(f"magic parameter = {magic:g}: must be greater than 0; 3/16 is the usual choice")
         odd = 1.0 / (magic / (1 / even - 0.5) + 0.5)
         return cls(nu=even, e=even, eps=even, q=odd, pi=even, m=odd)

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from lbm import FreeSlip, Inlet, InputError, NoSlip, Outlet, Rates, Simulation
+from lbm import FreeSlip, Inlet, InputError, NoSlip, Outlet, OutsideRangeWarning, Rates, Simulation
+from lbm.bodies import FixedBody
 
 RATES = Rates.two_relaxation_times(0.1)
 FACES = {"x": 0, "y": 1, "z": 2}
@@ -42,8 +43,60 @@ def test_pressure_difference_drives_poiseuille_flow(axis):
     y = np.arange(10) + 0.5
     exact = gradient / (2 * 0.1) * y * (10 - y)
     assert flow.velocity[axis][tuple(middle)] == pytest.approx(exact, rel=2e-3)
-    # the open faces leave out the viscous stress of the profile that crosses them
-    assert gradient == pytest.approx(drop / 3 / 24, rel=0.05)
+    assert gradient == pytest.approx(drop / 3 / 24, rel=2e-3)
+
+
+def test_flux_between_two_pressures_converges_with_the_square_of_the_cell():
+    errors = []
+    for n in (4, 8):  # cells from wall to wall, diffusive scaling
+        length, drop = 5 * n // 2, 0.002 * (8 / n) ** 2
+        faces = {"x-": Outlet(1 + drop / 2), "x+": Outlet(1 - drop / 2), "y": NoSlip()}
+        flow = Simulation((length, n, 4), RATES, faces=faces)
+        flow.run(30 * n * n)
+        y = np.arange(n) + 0.5
+        exact = np.sum(drop / 3 / length / (2 * 0.1) * y * (n - y))
+        errors.append(np.abs(flow.velocity[0, :, :, 0].sum(axis=1) / exact - 1).max())
+    assert errors[1] < 2e-3
+    assert np.log2(errors[0] / errors[1]) > 1.8
+
+
+def test_couette_flow_crosses_outlets_unchanged():
+    faces = {"x": Outlet(0.9), "z-": NoSlip(), "z+": NoSlip((0.05, 0, 0))}
+    flow = Simulation((8, 4, 8), RATES, faces=faces)
+    flow.set_flow(0.9)
+    flow.run(3001)
+    exact = 0.05 * (np.arange(8) + 0.5) / 8
+    assert np.abs(flow.velocity[0] - exact).max() < 1e-9
+
+
+@pytest.mark.parametrize("steps", [400, 401])
+def test_uniform_stream_along_open_sides_stays_uniform(steps):
+    u = (0.05, 0.0, 0.0)
+    flow = Simulation((9, 8, 5), RATES, faces={"x-": Inlet(u), "x+": "outlet", "y": "outlet", "z": "outlet"})
+    flow.set_flow(1.0, u)
+    flow.run(steps)
+    assert np.abs(flow.velocity - np.reshape(u, (3, 1, 1, 1))).max() < 1e-12
+    assert np.abs(flow.density - 1).max() < 1e-12
+
+
+@pytest.mark.parametrize("rest", [0.8, 1.0, 1.2])
+def test_walls_and_inlets_have_their_velocity_at_any_density(rest):
+    couette = Simulation((4, 4, 8), RATES, faces={"z-": NoSlip(), "z+": NoSlip((0.05, 0, 0))})
+    couette.set_flow(rest)
+    couette.run(3001)
+    assert couette.velocity[0, 0, 0] == pytest.approx(0.05 * (np.arange(8) + 0.5) / 8, rel=1e-9)
+    assert couette.density.mean() == pytest.approx(rest, abs=1e-13)
+    solid = np.zeros((4, 4, 8), dtype=bool)
+    solid[:, :, [0, -1]] = True
+    dragged = Simulation((4, 4, 8), RATES)
+    dragged.passes.append(FixedBody(solid, velocity=(0.02, -0.01, 0.0)))
+    dragged.set_flow(rest)
+    dragged.run(2001)
+    assert dragged.velocity[0, :, :, 1:-1] == pytest.approx(np.full((4, 4, 6), 0.02), rel=1e-9)
+    stream = Simulation((16, 4, 4), RATES, faces={"x-": Inlet((0.03, 0, 0)), "x+": Outlet(rest)})
+    stream.set_flow(rest, (0.03, 0, 0))
+    stream.run(500)
+    assert stream.velocity[0] == pytest.approx(np.full((16, 4, 4), 0.03), rel=1e-9)
 
 
 def test_lid_drives_a_vortex_and_loses_no_mass():
@@ -75,8 +128,28 @@ def test_wall_velocity_may_vary_over_the_face():
         ({"x": NoSlip(np.ones((3, 3, 3)))}, "shape"),
         ({"x": NoSlip((np.nan, 0, 0))}, "not finite"),
         ({"x": Outlet(-1.0)}, "density"),
+        ({"x": Outlet("a")}, "'a'"),
+        ({"x-": Inlet(0.05), "x+": "outlet"}, r"face x-.*shape \(\).*\(6, 6, 3\)"),
+        ({"x-": Inlet(np.zeros((6, 3))), "x+": "outlet"}, r"shape \(6, 3\)"),
+        ({"x-": Inlet(np.zeros((6, 1, 3))), "x+": "outlet"}, r"shape \(6, 1, 3\)"),
+        ({"x": NoSlip(0.0)}, "shape"),
+        ({"x": NoSlip(lambda t: 0.1)}, "shape"),
+        ({"x": NoSlip("fast")}, "'fast'"),
+        ({"y+": NoSlip((0.0, -0.1, 0.0)), "y-": "no-slip"}, r"face y\+.*normal component -0.1"),
+        ({"x": "no-slip", "x-": "outlet"}, "given twice"),
+        ({"x": None}, "None"),
+        ({"x": NoSlip}, r"NoSlip\(...\)"),
+        ({"x": 5}, "5"),
+        ("no-slip", "mapping"),
     ],
 )
 def test_bad_faces_are_refused(faces, named):
     with pytest.raises(InputError, match=named):
         Simulation((6, 6, 6), RATES, faces=faces)
+
+
+def test_inlets_that_fill_the_box_are_warned_of():
+    with pytest.warns(OutsideRangeWarning, match="net volume of 1.8 per step"):
+        Simulation((6, 6, 6), RATES, faces={"x-": Inlet((0.05, 0, 0)), "x+": "no-slip"})
+    u = (0.05, 0, 0)
+    Simulation((6, 6, 6), RATES, faces={"x-": Inlet(u), "x+": Inlet(u)})  # what enters leaves

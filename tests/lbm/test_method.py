@@ -90,6 +90,19 @@ def test_viscosity_must_be_positive(preset, nu):
         preset(nu)
 
 
+@pytest.mark.parametrize("wrong", ["0.1", None, [0.1], True])
+def test_rates_are_made_of_numbers(wrong):
+    for preset in (Rates.dhumieres2002, Rates.two_relaxation_times, Rates.bgk):
+        with pytest.raises(InputError, match=r"viscosity .*must be a number"):
+            preset(wrong)
+    with pytest.raises(InputError, match="bulk viscosity"):
+        Rates.bulk(0.1, wrong)
+    with pytest.raises(InputError, match="magic"):
+        Rates.two_relaxation_times(0.1, wrong)
+    with pytest.raises(InputError, match="s_e"):
+        Rates(nu=1, e=wrong, eps=1, q=1, pi=1, m=1)
+
+
 def test_relaxation_time_of_a_half_is_refused():
     with pytest.raises(InputError, match=r"s_nu.*0\.5"):
         Rates(nu=2.0, e=1, eps=1, q=1, pi=1, m=1)

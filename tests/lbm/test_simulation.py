@@ -1,7 +1,10 @@
+import signal
+
 import numpy as np
 import pytest
 
-from lbm import DivergenceError, InputError, Rates, Simulation
+from lbm import DivergenceError, InputError, Rates, Simulation, kernels
+from lbm.faces import NoSlip
 from lbm.observers import Average, Checkpoint, DivergenceGuard, FieldOutput, Probe, Sums
 
 RATES = Rates.two_relaxation_times(0.02)
@@ -31,8 +34,8 @@ def test_bad_arguments_are_refused(arguments, named):
         (np.ones((8, 8, 7)), 0.0, "density: shape"),
         (1.0, np.zeros((8, 8, 8, 3)), "velocity: shape"),
         (1.0, np.full((3, 8, 8, 8), np.nan), r"velocity: not finite"),
-        (np.full((8, 8, 8), np.inf), 0.0, "density: not finite"),
-        (-1.0, 0.0, "positive"),
+        (np.full((8, 8, 8), np.inf), (0.0, 0.0, 0.0), "density: not finite"),
+        (-1.0, (0.0, 0.0, 0.0), "positive"),
     ],
 )
 def test_bad_initial_fields_are_refused(density, velocity, named):
@@ -123,3 +126,171 @@ def test_fields_are_read_by_vtk(tmp_path):
 def test_negative_steps_are_refused():
     with pytest.raises(InputError, match="steps"):
         Simulation((8, 8, 8), RATES).run(-1)
+
+
+def test_a_new_simulation_is_at_rest():
+    flow = Simulation((4, 4, 4), RATES, force=(1e-3, 0, -2e-3))
+    assert np.abs(flow.velocity).max() < 1e-18
+    assert np.abs(flow.density - 1).max() < 1e-15
+
+
+def test_momentum_gains_the_trapezoidal_sum_of_the_force():
+    """d(rho u)/dt = F(t) in a uniform fluid, whose only error is that of the rule of integration."""
+
+    def force(t):
+        return np.array([1e-4 * np.cos(2 * np.pi * t / 40), 2e-7 * t, 0.0])
+
+    flow = Simulation((4, 4, 4), Rates.bgk(0.1), force=force)
+    expected = np.zeros(3)
+    for n in range(25):
+        flow.run(1)
+        expected += (force(n) + force(n + 1)) / 2
+        assert np.abs(flow.velocity - expected.reshape(3, 1, 1, 1)).max() < 1e-16
+
+
+def _random_flow(**arguments):
+    flow = Simulation((8, 8, 8), RATES, **arguments)
+    flow.set_flow(1.0, 0.02 * np.random.default_rng(5).standard_normal((3, 8, 8, 8)))
+    return flow
+
+
+@pytest.mark.parametrize(("sweep", "stopped"), [("sweep_two", 6), ("sweep", 3)])
+def test_an_interrupted_run_can_be_continued(monkeypatch, sweep, stopped):
+    """Ctrl-C while a kernel works leaves whole steps, the usual handler, and the flow of an undisturbed run."""
+    faces = None if sweep == "sweep_two" else {"x-": NoSlip((0, 0.01, 0)), "x+": "no-slip"}
+    whole, flow = _random_flow(faces=faces), _random_flow(faces=faces)
+    whole.run(9)
+    kernel, calls = getattr(kernels, sweep), []
+
+    def interrupted(*arguments):
+        kernel(*arguments)
+        calls.append(sweep)
+        if len(calls) == 4:  # the first one compiles
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(kernels, sweep, interrupted)
+    handler = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        flow.run(9)
+    assert flow.steps == stopped
+    assert signal.getsignal(signal.SIGINT) is handler
+    flow.run(9 - stopped)
+    assert (flow.velocity == whole.velocity).all()
+
+
+def test_a_step_that_fails_half_way_is_not_used(tmp_path):
+    def wall(t):
+        if t > 3:
+            raise ZeroDivisionError
+        return 0.0, 0.01, 0.0
+
+    flow = _random_flow(faces={"x-": NoSlip(wall), "x+": "no-slip"})
+    flow.run(2)
+    flow.save(tmp_path / "sound.h5")
+    with pytest.raises(ZeroDivisionError):
+        flow.run(5)
+    for use in (lambda: flow.run(1), flow.fields, lambda: flow.save(tmp_path / "broken.h5")):
+        with pytest.raises(InputError, match="set_flow or restore"):
+            use()
+    assert not (tmp_path / "broken.h5").exists()
+    flow.restore(tmp_path / "sound.h5")
+    flow.run(1)
+    with pytest.raises(ZeroDivisionError):
+        flow.run(1)
+    flow.set_flow()
+    assert flow.steps == 0
+    flow.run(3)
+
+
+@pytest.mark.parametrize("bad", [(1.0, 2.0), "up", (np.nan, 0, 0), None])
+def test_a_force_that_goes_bad_leaves_the_last_whole_step(bad):
+    flow = _random_flow(force=lambda t: (1e-5, 0, 0) if t < 3 else bad)
+    with pytest.raises(InputError, match=r"force = .* at time 3"):
+        flow.run(5)
+    assert flow.steps == 3
+    flow.given_force = (1e-5, 0, 0)
+    flow.run(2)
+    whole = _random_flow(force=(1e-5, 0, 0))
+    whole.run(5)
+    assert (flow.velocity == whole.velocity).all()
+
+
+@pytest.mark.parametrize(
+    "act",
+    [lambda flow: flow.set_flow(), lambda flow: flow.run(1), lambda flow: flow.restore("any.h5")],
+    ids=["set_flow", "run", "restore"],
+)
+def test_an_observer_may_only_look(act):
+    class Meddler:
+        every = 2
+
+        def __call__(self, flow):
+            if flow.steps:
+                act(flow)
+
+    flow = _random_flow()
+    with pytest.raises(InputError, match="during a run"):
+        flow.run(5, [Meddler()])
+    assert flow.steps == 2
+    flow.run(1)
+
+
+def test_the_start_is_observed_once():
+    flow, early, late = _random_flow(), Probe(5, (0, 0, 0)), Probe(5, (0, 0, 0))
+    flow.run(0, [early])
+    flow.run(7, [early, late])
+    flow.run(3, [early, late])
+    assert early.steps == late.steps == [0, 5, 10]
+    flow.set_flow()
+    flow.run(0, [early])
+    assert early.steps[3:] == [0]
+
+
+@pytest.mark.parametrize("observers", [Probe(1, (0, 0, 0)), [print], [Probe], 3, [None]])
+def test_what_cannot_observe_is_refused(observers):
+    with pytest.raises(InputError, match="observer"):
+        Simulation((4, 4, 4), RATES).run(1, observers)
+
+
+@pytest.mark.parametrize("every", [0, 2.5, "2"])
+def test_observers_need_a_whole_number_of_steps(every):
+    with pytest.raises(InputError, match="every"):
+        Sums(every)
+
+
+def test_progress_in_a_log_is_lines(capsys, monkeypatch):
+    monkeypatch.setattr("lbm.progress._SECONDS_PER_LINE", 0.0)
+    monkeypatch.setattr("lbm.progress._UPDATES_PER_REFRESH", 2 * 8**3)
+    flow = _random_flow()
+    flow.run(6, progress=True)
+    lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("lbm")]
+    assert [line.split()[1] for line in lines] == ["2/6", "4/6", "6/6"]
+
+
+@pytest.mark.parametrize(("fails_at", "said"), [(0, []), (4, ["4/9"])])
+def test_progress_of_a_failed_run_says_how_far_it_came(capsys, fails_at, said):
+    class Failing:
+        every = 4
+
+        def __call__(self, flow):
+            if flow.steps == fails_at:
+                raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        _random_flow().run(9, [Failing()], progress=True)
+    lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("lbm")]
+    assert [line.split()[1] for line in lines] == said
+
+
+def test_rates_are_fixed():
+    flow = Simulation((4, 4, 4), RATES)
+    with pytest.raises(AttributeError):
+        flow.rates = Rates.bgk(0.1)
+    assert flow.rates == RATES
+
+
+@pytest.mark.parametrize("velocity", [0.05, np.zeros((8, 8, 8)), np.zeros((3, 1, 1, 1))])
+def test_a_velocity_of_another_shape_is_refused(velocity):
+    flow = Simulation((8, 8, 8), Rates.two_relaxation_times(0.1))
+    with pytest.raises(InputError, match="shape"):
+        flow.set_flow(velocity=velocity)
