@@ -18,19 +18,20 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 
 
-class _Record(BaseModel):
-    # A misspelt key must not pass as an unset one.
-    model_config = ConfigDict(extra="forbid", frozen=True)
+class Record(BaseModel):
+    """Base of all that is read from a file: a misspelt key must not pass as an unset one."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
 
-class Fluid(_Record):
+class Fluid(Record):
     """``density`` rho_f in kg/m3, dynamic ``viscosity`` mu in Pa s."""
 
     density: Positive
     viscosity: Positive
 
 
-class Sphere(_Record):
+class Sphere(Record):
     """``diameter`` d in m, ``density`` rho_p in kg/m3, dry restitution ``e_dry``, ``roughness`` in m.
 
     ``e_dry`` and ``roughness`` are None where nobody states them.
@@ -50,14 +51,14 @@ class Sphere(_Record):
         return self.density * math.pi * self.diameter**3 / 6
 
 
-class Wall(_Record):
+class Wall(Record):
     """What is known of the wall: ``roughness`` in m, ``material`` in words."""
 
     roughness: NonNegative | None = None
     material: str | None = None
 
 
-class QuotedImpact(_Record):
+class QuotedImpact(Record):
     """The speed of the first impact, in m/s, for a record that begins after it."""
 
     speed: Positive
@@ -65,7 +66,7 @@ class QuotedImpact(_Record):
     speed_definition: Literal["far", "contact", "window"] = "far"
 
 
-class Conditions(_Record):
+class Conditions(Record):
     """Everything but the track itself. ``partner`` is the second sphere where there is no wall."""
 
     fluid: Fluid

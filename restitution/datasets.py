@@ -14,9 +14,9 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
-from restitution.conditions import Conditions, NonNegative
+from restitution.conditions import Conditions, NonNegative, Record
 from restitution.errors import Defect, InputError
 from restitution.stokes import CONVENTIONS, Speed
 from restitution.table_schema import Schema, read_record, read_schema
@@ -30,10 +30,6 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
-
-
-class _Record(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
 
 def _inside(path: str) -> str:
@@ -51,14 +47,14 @@ def _known_convention(key: str) -> str:
 Inside = Annotated[str, AfterValidator(_inside)]
 
 
-class Source(_Record):
+class Source(Record):
     """Frictionless: where the data come from."""
 
     title: str
     path: str | None = None
 
 
-class Experiment(_Record):
+class Experiment(Record):
     """The publication: ``cite`` as in running text, full ``reference``, ``doi``, ``figure`` or table."""
 
     cite: str
@@ -67,7 +63,7 @@ class Experiment(_Record):
     figure: str
 
 
-class ObtainedFrom(_Record):
+class ObtainedFrom(Record):
     """The public place the numbers were taken from."""
 
     repository: str
@@ -76,7 +72,7 @@ class ObtainedFrom(_Record):
     licence: str
 
 
-class ReadingError(_Record):
+class ReadingError(Record):
     """The error of digitisation, in words and, where known, as standard deviations by column.
 
     ``sigma`` differs from row to row, ``offset_sigma`` is common to the record (both in the unit of the column),
@@ -84,9 +80,9 @@ class ReadingError(_Record):
     """
 
     text: str
-    sigma: dict[str, NonNegative] = {}
-    offset_sigma: dict[str, NonNegative] = {}
-    scale_sigma: dict[str, NonNegative] = {}
+    sigma: dict[str, NonNegative] = Field(default_factory=dict)
+    offset_sigma: dict[str, NonNegative] = Field(default_factory=dict)
+    scale_sigma: dict[str, NonNegative] = Field(default_factory=dict)
 
     @property
     def speed_scale_sigma(self) -> float:
@@ -94,14 +90,14 @@ class ReadingError(_Record):
         return math.hypot(*self.scale_sigma.values())
 
 
-class QuotedConventions(_Record):
+class QuotedConventions(Record):
     """What the quoted Stokes number stands for."""
 
     stokes: Annotated[str, AfterValidator(_known_convention)]
     speed: Speed
 
 
-class Resource(_Record):
+class Resource(Record):
     """What is known about one table: the properties of Frictionless, then the project's own."""
 
     name: str
@@ -123,7 +119,7 @@ class Resource(_Record):
     digitisation_error: ReadingError
     conditions: Conditions | None = None
     conventions: QuotedConventions | None = None
-    quoted: dict[str, float | tuple[float, ...]] = {}
+    quoted: dict[str, float | tuple[float, ...]] = Field(default_factory=dict)
     measured: tuple[str, ...]
     derived: dict[str, str]
     notes: tuple[str, ...] = ()
@@ -140,7 +136,7 @@ class Resource(_Record):
         return PurePosixPath(self.schema_path).stem
 
 
-class Package(_Record):
+class Package(Record):
     """``datapackage.json``."""
 
     standard: str | None = Field(None, alias="$schema")

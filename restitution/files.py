@@ -14,26 +14,28 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
 
     Raises :class:`InputError` where that cannot be done; then nothing is changed.
     """
-    path = Path(path).resolve()
-    if path.exists() and not path.is_file():
-        raise InputError(Defect("is not a regular file", str(path)))
-    _write(path.parent, {path.name: content})
+    path = Path(path)
+    try:
+        path = path.resolve()
+        if path.exists() and not path.is_file():
+            raise InputError(Defect("is not a regular file", str(path)))
+        _write(path.parent, {path.name: content})
+    except OSError as error:
+        raise _defect(error, path) from None
 
 
 def write_folder(folder: str | Path, contents: Mapping[str, str | bytes]) -> None:
     """Write several files into ``folder``, made if need be: all are written aside first, then renamed in turn."""
-    folder = Path(folder)
-    missing = [place for place in (folder, *folder.parents) if not place.exists()]
+    folder, made = Path(folder), []
     try:
+        made = [place for place in (folder, *folder.parents) if not place.exists()]
         folder.mkdir(parents=True, exist_ok=True)
         _write(folder, contents)
-    except BaseException as error:
-        for place in missing:
+    except OSError as error:
+        for place in made:
             if place.is_dir() and not any(place.iterdir()):
                 place.rmdir()
-        if isinstance(error, OSError):
-            raise _defect(error, folder) from None
-        raise
+        raise _defect(error, folder) from None
 
 
 def _write(folder: Path, contents: Mapping[str, str | bytes]) -> None:
@@ -44,17 +46,15 @@ def _write(folder: Path, contents: Mapping[str, str | bytes]) -> None:
             if target.is_dir():
                 raise IsADirectoryError(None, "is a folder", str(target))
             temporary = folder / f".{name}.{os.getpid()}.part"
-            aside.append((temporary, target))
-            temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+            with temporary.open("xb") as stream:
+                aside.append((temporary, target))
+                stream.write(content.encode() if isinstance(content, str) else content)
         for temporary, target in aside:
             temporary.replace(target)
-    except OSError as error:
-        raise _defect(error, folder) from None
     finally:
         for temporary, _ in aside:
-            if temporary.exists():
-                temporary.unlink()
+            temporary.unlink(missing_ok=True)
 
 
-def _defect(error: OSError, folder: Path) -> InputError:
-    return InputError(Defect(f"cannot be written: {error.strerror or error}", str(error.filename or folder)))
+def _defect(error: OSError, place: Path) -> InputError:
+    return InputError(Defect(f"cannot be written: {error.strerror or error}", str(error.filename or place)))

@@ -13,10 +13,10 @@ The definitions differ in the frames that the branches are fitted to:
 
 Uncertainties come from draws of the averaged fits, so they follow from the position noise and from the choice
 of window. Errors of d, density and viscosity are not in them. On synthetic flights, every other one with a wake
-that brakes the sphere after the rebound by up to v_in/sqrt(d/g) (three times that of the shipped records), the
-68 % intervals of v_in, v_out and e_eff cover 67 to 70 % for gap tracks and 69 to 78 % for velocity tracks; of the
-flights with a wake alone 45 to 65 %, e_eff being low by one standard deviation: what decays within a frame or two
-cannot be seen.
+that brakes the sphere after the rebound by up to v_in/sqrt(d/g) (about three times that after the first rebound
+of the 3 mm sphere of Gondret et al. 2002), the 68 % intervals of v_in, v_out and e_eff cover 67 to 70 % for gap
+tracks and 69 to 78 % for velocity tracks; of the flights with a wake alone 45 to 65 %, e_eff being low by one
+standard deviation: what decays within a frame or two cannot be seen.
 """
 
 from __future__ import annotations

@@ -10,21 +10,16 @@ import json
 from pathlib import Path
 from typing import Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic import Field as PydanticField
 
-from restitution.conditions import defects_of
+from restitution.conditions import Record, defects_of
 from restitution.errors import Defect, InputError
 
 Model = TypeVar("Model", bound=BaseModel)
 
 
-class _Record(BaseModel):
-    # A rule that is misspelt or not carried out here must not pass as one that is.
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
-
-
-class Constraints(_Record):
+class Constraints(Record):
     """What one cell must satisfy; bounds are in the unit of the field."""
 
     required: bool = False
@@ -35,7 +30,7 @@ class Constraints(_Record):
     enum: tuple[str, ...] | None = None
 
 
-class Field(_Record):
+class Field(Record):
     """One column: ``unit`` in SI ("1" for a pure number, "" for text)."""
 
     name: str
@@ -45,14 +40,14 @@ class Field(_Record):
     constraints: Constraints = Constraints()
 
 
-class RequiredWhen(_Record):
+class RequiredWhen(Record):
     """``field`` must not be empty in rows where every field of ``when`` has the given value."""
 
     field: str
     when: dict[str, str]
 
 
-class Rules(_Record):
+class Rules(Record):
     """Rules between rows and between fields, checked on the rows whose cells are valid."""
 
     minimum_rows: int = 1
@@ -61,7 +56,7 @@ class Rules(_Record):
     required_when: tuple[RequiredWhen, ...] = ()
 
 
-class Schema(_Record):
+class Schema(Record):
     """A kind of table. ``fields`` are its columns in their usual order."""
 
     standard: str | None = PydanticField(None, alias="$schema")

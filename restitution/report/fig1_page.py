@@ -41,7 +41,7 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         impacts=_impacts(fig1, str(speed)),
         notes=fig1.notes,
         eq4=[laws.get(name) for name in content.EQ4_READINGS],
-        published=[laws.get(name) for name in content.OTHERS],
+        others=[laws.get(name) for name in content.OTHERS],
         conventions=list(CONVENTIONS.values()),
         film=H_FILM,
         data=[datasets.resource(name) for name in fig1.conditions],
@@ -49,7 +49,7 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
 
 
 def _ranking(overall: pd.DataFrame, speed: str) -> list[tuple[str, list[dict]]]:
-    """Laws by residual under the figure's definition, readings of Eq. (4) and published laws apart."""
+    """Laws by residual under the figure's definition, readings of Eq. (4) and other laws apart."""
     best = {d: overall.xs(d, level=1)["weighted_rms"].min() for d in DEFINITIONS}
 
     def row(name: str) -> dict:
