@@ -1,0 +1,56 @@
+"""The film between a sphere and a wall that the grid does not resolve: forces that closures add to the fluid's.
+
+Closures are plain callables in lattice units. ``normal(gap, velocity, onset)`` returns the force along the
+wall's normal; ``velocity`` is positive away from the wall and ``onset`` the velocity with which the sphere came
+through the cut-off, NaN while it leaves. It must be of first degree in ``velocity``, as lubrication is.
+``tangential(gap, slip, spin)`` returns force and torque, 3 components each, of a sphere that moves with
+``slip`` along the wall and turns with ``spin``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lbm.errors import InputError
+
+Normal = Callable[[float, float, float], float]
+Tangential = Callable[[float, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+@dataclass(frozen=True)
+class Film:
+    """Below the gap ``cut_off`` act ``normal`` and ``tangential``; below ``floor`` they stay as they are there.
+
+    Gaps in cells. ``floor`` is the height at which the rough surfaces touch.
+    """
+
+    cut_off: float
+    floor: float
+    normal: Normal | None = None
+    tangential: Tangential | None = None
+
+    def __post_init__(self) -> None:
+        if not (0 < self.floor < self.cut_off and math.isfinite(self.cut_off)):
+            raise InputError(
+                f"film: floor = {self.floor:g} must lie between 0 and cut_off = {self.cut_off:g} cells"
+            )
+
+    def resistance(self, gap: float, velocity: float, onset: float) -> tuple[float, float]:
+        """Normal force at velocity zero and its slope; zero where it would drive the sphere on."""
+        if self.normal is None or gap >= self.cut_off or velocity == 0:
+            return 0.0, 0.0
+        gap = max(gap, self.floor)
+        force, still = self.normal(gap, velocity, onset), self.normal(gap, 0.0, onset)
+        if force * velocity >= 0:
+            return 0.0, 0.0
+        return still, (force - still) / velocity
+
+    def along(self, gap: float, slip: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force and torque of the motion along the wall."""
+        if self.tangential is None or gap >= self.cut_off:
+            return np.zeros(3), np.zeros(3)
+        return self.tangential(max(gap, self.floor), slip, spin)
