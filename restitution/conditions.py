@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import tomllib
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -103,18 +103,22 @@ def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
     return found
 
 
-def read_conditions(path: str | Path) -> Conditions:
-    """Read a TOML file of conditions; raises :class:`InputError` naming every field that is wrong."""
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """The content of a TOML file; raises :class:`InputError` where it cannot be read as such."""
     path = Path(path)
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
     except UnicodeDecodeError as error:
         raise InputError(Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", str(path))) from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(Defect(f"is not TOML: {error}", str(path))) from None
+
+
+def read_conditions(path: str | Path) -> Conditions:
+    """Read a TOML file of conditions; raises :class:`InputError` naming every field that is wrong."""
     try:
-        return Conditions.model_validate(content)
+        return Conditions.model_validate(read_toml(path))
     except ValidationError as error:
         raise InputError(*defects_of(error, str(path))) from None

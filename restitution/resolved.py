@@ -1,0 +1,298 @@
+"""The resolved solver on a case: the only place where ``restitution`` meets ``lbm``.
+
+A case becomes lattice units, the closure laws become the plain callables that :mod:`lbm.film` and
+:mod:`lbm.contact` take, and what the solver recorded comes back in SI, time counted from the first contact.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import lbm
+from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact
+from lbm.film import Film
+from lbm.observers import DivergenceGuard, FieldOutput
+from lbm.rates import PRESETS
+from lbm.scales import FlowScales
+from lbm.spheres import Sphere, Spheres
+from restitution import laws
+from restitution.case import Case
+from restitution.errors import Defect, InputError
+from restitution.impact_speed import H_FILM
+from restitution.laws.source_abstract_eq3 import lubrication_force
+from restitution.measured_bounces import measured_restitution
+from restitution.stokes import Speed, StokesNumber
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+OUTPUT_D = 0.04
+"""Way in diameters that the reference speed makes between two rows of a trajectory."""
+_LONGEST = 4.0
+"""A run without contact is given up after this many times the fall at the reference speed."""
+_LONGEST_RUN = 100
+
+
+@dataclass(frozen=True)
+class SolverContact:
+    """One contact as the solver had it: time in s since the release, speeds in m/s at the wall.
+
+    With the contact mode ``effective`` the speeds are those of the motion outside the film, carried to the wall.
+    """
+
+    time_s: float
+    speed_in_m_s: float
+    speed_out_m_s: float
+
+
+class ResolvedRun:
+    """A case on the lattice; :meth:`advance` until :attr:`finished`, and read in between."""
+
+    def __init__(self, case: Case, file: str = ""):
+        if case.numerics is None:
+            raise InputError(
+                Defect("is missing: the resolved solver needs it", file or case.name, None, "numerics")
+            )
+        self.case = case
+        self.warnings: list[str] = []
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", lbm.OutsideRangeWarning)
+            try:
+                self.flow = _scales(case)
+                self.simulation, self.spheres = _set_up(case, self.flow)
+            except lbm.InputError as error:
+                raise InputError(Defect(str(error), file or case.name, None, "numerics")) from None
+        self.warnings += [str(w.message) for w in caught]
+        self.guard = DivergenceGuard()
+
+    @property
+    def step_s(self) -> float:
+        """One time step in s."""
+        return self.flow.scales.step_s
+
+    @property
+    def cells(self) -> int:
+        """Cells of the box."""
+        return int(np.prod(self.simulation.shape))
+
+    @property
+    def time_s(self) -> float:
+        """Time since the release."""
+        return self.simulation.steps * self.step_s
+
+    @property
+    def gap_d(self) -> float:
+        """Gap now, in diameters."""
+        return float(self.spheres.centres[0, 2] - self.spheres.radii[0]) / self.flow.length
+
+    @property
+    def contacts(self) -> list[SolverContact]:
+        """The contacts so far."""
+        speed = self.flow.scales.unit("velocity")
+        return [
+            SolverContact(float(i.step) * self.step_s, float(i.speed_in * speed), float(i.speed_out * speed))
+            for i in self.spheres.impacts
+        ]
+
+    @property
+    def expected_s(self) -> float:
+        """About how long the run is going to be, in s since the release."""
+        span, found = self.case.run, self.contacts
+        if span.after_contact is None:
+            return span.duration or self._longest
+        first = found[0].time_s if found else _fall_time(self.case)
+        return min(first + span.after_contact, span.duration or math.inf)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the span of the case is over."""
+        span, found, now = self.case.run, self.contacts, self.time_s
+        if span.duration is not None and now >= span.duration:
+            return True
+        if self.case.contact is None and self.gap_d * self.case.sphere.diameter <= (self.case.floor or 0.0):
+            return True
+        if span.after_contact is not None and found:
+            return now >= found[0].time_s + span.after_contact
+        return now >= self._longest
+
+    @property
+    def _longest(self) -> float:
+        return _LONGEST * _fall_time(self.case)
+
+    def advance(self, observers: tuple = ()) -> None:
+        """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed."""
+        speed = max(-float(self.spheres.velocities[0, 2]), 1e-3 * self.flow.speed)
+        steps = _LONGEST_RUN
+        if not self.spheres.impacts:
+            steps = int(min(max(0.5 * self.gap_d * self.flow.length / speed, 1), steps))
+        self.simulation.run(steps, observers, guard=self.guard if steps >= _LONGEST_RUN // 2 else None)
+
+    def snapshots(self, folder: Path) -> FieldOutput:
+        """An observer that writes the flow for ParaView."""
+        interval = self.case.run.snapshot_interval
+        steps = _LONGEST_RUN if interval is None else max(1, round(interval / self.step_s))
+        return FieldOutput(steps, folder, self.case.name, self.flow.scales)
+
+    def motion(self) -> pd.DataFrame:
+        """Every step so far in SI: ``time_s``, ``gap_m``, position, velocity, spin, force and torque of the fluid.
+
+        Time is counted from the first contact, or from the release where there is none; velocities are positive
+        away from the wall (z).
+        """
+        import pandas as pd
+
+        track, si = self.spheres.track(0), self.flow.scales.si
+        first = self.spheres.impacts[0].step if self.spheres.impacts else 0.0
+        kinds = {
+            "gap": ("gap_m", "length"), "v": ("v{}_m_s", "velocity"), "w": ("spin_{}_1_s", "frequency"),
+            "f": ("force_{}_N", "force"), "t": ("torque_{}_N_m", "torque"),
+        }  # fmt: skip
+        table = {"time_s": (track["step"] - first) * self.step_s}
+        table["gap_m"] = si(track["z"] - self.spheres.radii[0], "length")
+        table |= {f"{axis}_m": si(track[axis], "length") for axis in "xyz"}
+        for letter in "vwft":
+            name, quantity = kinds[letter]
+            table |= {name.format(axis): si(track[letter + axis], quantity) for axis in "xyz"}
+        return pd.DataFrame(table)
+
+    def rows_apart(self) -> int:
+        """Steps between two rows of a trajectory."""
+        return max(1, round(OUTPUT_D * self.flow.length / self.flow.speed))
+
+    def vorticity(self) -> np.ndarray:
+        """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz); NaN inside the sphere."""
+        u = self.simulation.velocity
+        middle = self.simulation.shape[1] // 2
+        along, up = u[0, :, middle, :].astype(float), u[2, :, middle, :].astype(float)
+        curl = np.gradient(along, axis=1) - np.gradient(up, axis=0)
+        x, z = (np.arange(n) + 0.5 for n in curl.shape)
+        centre, r = self.spheres.centres[0], self.spheres.radii[0]
+        inside = (x[:, None] - centre[0]) ** 2 + (z[None, :] - centre[2]) ** 2 < r**2
+        return np.where(inside, np.nan, self.flow.scales.si(curl, "frequency"))
+
+
+def _scales(case: Case) -> FlowScales:
+    n = case.numerics
+    return FlowScales.from_conditions(
+        length_m=case.sphere.diameter,
+        speed_m_s=case.reference_speed,
+        viscosity_m2_s=case.fluid.viscosity / case.fluid.density,
+        density_kg_m3=case.fluid.density,
+        cells=n.cells_per_diameter,
+        lattice_speed=n.lattice_speed,
+    )
+
+
+def _set_up(case: Case, flow: FlowScales) -> tuple[lbm.Simulation, Spheres]:
+    n, radius = case.numerics, flow.length / 2
+    wide, high = round(n.width_d * flow.length), round(n.height_d * flow.length)
+    density = case.sphere.density / case.fluid.density
+    gravity = flow.scales.lattice(case.gravity, "acceleration")
+    film = _film(case, flow)
+    spheres = Spheres(
+        [Sphere(radius, density, (wide / 2, wide / 2, radius + case.release.gap_d * flow.length))],
+        gravity=(0.0, 0.0, -gravity),
+        film=film,
+        contact=_contact(case, flow, density),
+        drive=_drive(case, flow),
+        interpolation=n.interpolation,
+    )
+    simulation = lbm.Simulation(
+        (wide, wide, high),
+        PRESETS[n.rates](viscosity=flow.viscosity),
+        faces={"x": n.sides, "y": n.sides, "z-": "no-slip", "z+": n.top},
+        dtype=n.precision,
+    )
+    simulation.add(spheres)
+    return simulation, spheres
+
+
+def _drive(case: Case, flow: FlowScales) -> Callable | None:
+    r = case.release
+    if r.kind == "rest":
+        return None
+    speed, ramp = flow.scales.lattice(r.speed, "velocity"), r.ramp / flow.scales.step_s
+    free_below = r.free_below_d * flow.length
+
+    def drive(step: float, gap: float) -> tuple[float, float, float] | None:
+        return None if gap < free_below else (0.0, 0.0, speed * math.expm1(-step / ramp))
+
+    return drive
+
+
+def _film(case: Case, flow: FlowScales) -> Film | None:
+    if case.floor is None or (case.contact is not None and case.contact.mode == "effective"):
+        return None
+    floor = flow.scales.lattice(case.floor, "length")
+    return Film(case.film.cut_off_cells, floor, normal_force(case, flow))
+
+
+def normal_force(case: Case, flow: FlowScales) -> Callable[[float, float, float], float] | None:
+    """The film's normal force in lattice units, of gap, velocity away from the wall, and that at the cut-off."""
+    form, r, mu = case.film.form, flow.length / 2, flow.viscosity
+    cut_off, floor = case.film.cut_off_cells, flow.scales.lattice(case.floor, "length")
+    if form == "none":
+        return None
+    if form == "source_abstract_eq3":
+
+        def eq3(gap: float, velocity: float, onset: float) -> float:
+            return -float(lubrication_force(gap, -velocity, -onset, r=r, mu=mu, D0=cut_off, h_min=floor))
+
+        return eq3
+    law = laws.get(form, eps_c=cut_off / r, eps_min=floor / r)
+
+    def difference(gap: float, velocity: float, onset: float) -> float:
+        return float(-6 * math.pi * mu * r * velocity * law(gap / r, out_of_range="ignore"))
+
+    return difference
+
+
+def _contact(case: Case, flow: FlowScales, density: float) -> Contact | None:
+    c, e = case.contact, case.sphere.e_dry
+    if c is None:
+        return None
+    displaced = math.pi / 6 * flow.length**3
+    carried = c.added_mass * displaced
+    if c.mode == "dry":
+        return DryRebound(e, carried)
+    if c.mode != "effective":
+        make = SoftContact.linear if c.mode == "soft_linear" else SoftContact.hertz
+        return make(e, density * displaced + carried, c.duration_steps)
+    free_fall = flow.scales.lattice(case.conditions.free_fall, "acceleration")
+    return FilmRebound(rebound(case, flow.scales.unit("velocity")), H_FILM * flow.length, free_fall)
+
+
+def rebound(case: Case, unit: float) -> Callable[[float, int], float]:
+    """Rebound speed of an approach speed outside the film, both in units of ``unit`` m/s, and bounce number.
+
+    With measured values the sphere stays at the wall after the last of them.
+    """
+    c, conditions = case.contact, case.conditions
+    if c.law is None:
+        measured = measured_restitution(case.record) if c.measured == "record" else c.measured
+        return lambda v, count: v * (measured[count] if count < len(measured) else 0.0)
+    law = laws.get(c.law, **c.parameters)
+
+    def by_law(v: float, count: int) -> float:
+        if v <= 0:
+            return 0.0
+        St = StokesNumber.from_speed(v * unit, conditions, "st", Speed.FAR).read_as(law.speed)
+        return float(v * law(St, case.sphere.e_dry, conditions, out_of_range="ignore"))
+
+    return by_law
+
+
+def _fall_time(case: Case) -> float:
+    """Estimate of the time in s to the first contact."""
+    gap, fall = case.release.gap_d * case.sphere.diameter, case.conditions.free_fall
+    speed = case.reference_speed
+    if case.release.kind == "drive":
+        return gap / speed + case.release.ramp
+    return gap / speed + 0.5 * speed / fall
