@@ -32,9 +32,10 @@ _PER_CONTACT = 200  # sub-steps a soft contact
 class WallState:
     """What a sphere remembers of one wall; NaN where there is nothing to remember.
 
-    ``onset`` velocity at the film's cut-off, ``owed`` impulse that film and wall have still to pay to the fluid, ``touching`` speed at
-    the begin of a soft contact; for :class:`FilmRebound` ``inside`` the film or not, the ``acceleration``
-    there, and time and velocity (``timed``, ``passed``) two edges away.
+    ``onset`` velocity at the film's cut-off, ``owed`` impulse that film and wall have still to pay to the
+    fluid, ``touching`` speed at the begin of a soft contact; for :class:`FilmRebound` ``inside`` the film or
+    not, the ``acceleration`` there, time and velocity (``timed``, ``passed``) two edges away, and the
+    ``count`` of impacts.
     """
 
     onset: float = math.nan
