@@ -45,10 +45,8 @@ class FilmRebound:
 class DryRebound:
     """Instantaneous rebound at the floor of the film: ``v_out = e_dry v_in``.
 
-    The fluid around the sphere is reversed with it and takes the impulse ``added_mass (v_out + v_in)``. It
-    comes not from the sphere but from the wall, as for any body that carries other mass with it. The fluid,
-    in which sound needs some steps to pass the sphere, asks for it after the impact: until that much has been
-    paid, the wall bears what force of the fluid acts towards it. No number of steps is chosen anywhere.
+    The fluid around the sphere, ``added_mass``, is reversed with it. What that takes comes not from the sphere
+    but from the wall, as for any body that carries other mass along; see :mod:`lbm.wall_motion`.
     """
 
     e_dry: float

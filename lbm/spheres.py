@@ -59,7 +59,7 @@ class Spheres:
     ----------
     spheres : where and how they start.
     gravity : acceleration, 3 components; buoyancy follows, the fluid itself is not accelerated.
-    film, contact : what acts near no-slip walls beyond the fluid's force; without a contact nothing stops a sphere.
+    film, contact : what acts near no-slip walls beyond the fluid's force; without contact nothing stops it.
     drive : ``drive(step, gap)`` gives the velocity of all spheres at the end of that step, or None, which sets
         them free for good.
     interpolation : a scheme of :mod:`lbm.reflection`.
@@ -156,7 +156,8 @@ class Spheres:
     def _free_motion(self, s: int, step: float, v: np.ndarray, gaps: dict[int, float]) -> np.ndarray:
         """Moves sphere ``s`` from velocity ``v``; returns the new one."""
         mass, radius = self.masses[s], self.radii[s]
-        force = self.forces[s] + (mass - self.volumes[s]) * self.gravity
+        weight = (mass - self.volumes[s]) * self.gravity
+        force = self.forces[s].copy()
         torque = self.torques[s].copy()
         near = {f: gap for f, gap in gaps.items() if self.wall_motion.matters(gap, _away(f) * v[f // 2])}
         for f, gap in near.items():
@@ -165,13 +166,13 @@ class Spheres:
                 slip[f // 2] = 0.0
                 push, turn = self.film.along(gap, slip, self.spins[s])
                 force, torque = force + push, torque + turn
-        new = v + force / mass
+        new = v + (force + weight) / mass
         centre = self.centres[s] + 0.5 * (v + new)
         for f, gap in near.items():
             axis, sign = f // 2, _away(f)
             state = self._at_walls[s, f]
             after, speed, impacts = self.wall_motion.step(
-                state, step, gap, sign * v[axis], sign * force[axis], mass
+                state, step, gap, sign * v[axis], sign * force[axis], sign * weight[axis], mass
             )
             new[axis] = sign * speed
             centre[axis] = self.centres[s, axis] + sign * (after - gap)

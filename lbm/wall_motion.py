@@ -1,11 +1,17 @@
 """Motion of a sphere along the normal of a wall during one fluid step, in sub-steps of its own.
 
-With gap h, velocity v positive away from the wall, F the force of all but film and contact, per sub-step::
+With gap h, velocity v positive away from the wall, F fluid's force and weight, per sub-step::
 
-    m (v' - v)/dt = F + F_film(h_mid, (v + v')/2),   h' = h + dt (v + v')/2,   h_mid = h + v dt/2
+    v' - v = dt [F/m + F_film(h_mid, (v + v')/2)/(m + m_a)],   h' = h + dt (v + v')/2,   h_mid = h + v dt/2
 
 the implicit midpoint rule in v, second order. dt is at most ``fraction`` of h/|v|: the film is resolved
 whatever the fluid's step, and the moment of contact falls where it falls.
+
+Film and contact change the velocity within less time than sound needs to pass the sphere on the lattice. In
+the liquid that is no time at all: they act on sphere and added mass m_a together. So with a
+:class:`lbm.contact.DryRebound` they do here, and since the lattice's fluid asks the sphere for the impulse
+m_a (change of velocity) only afterwards, that impulse is kept as a debt and the fluid's force is not passed on
+to the sphere until it is paid. The principle has no time or number of steps to choose.
 """
 
 from __future__ import annotations
@@ -26,9 +32,10 @@ _PER_CONTACT = 200  # sub-steps a soft contact
 class WallState:
     """What a sphere remembers of one wall; NaN where there is nothing to remember.
 
-    ``onset`` velocity at the film's cut-off, ``owed`` impulse that the wall still pays, ``touching`` speed at
-    the begin of a soft contact; for :class:`FilmRebound` ``inside`` the film or not, the ``acceleration``
-    there, and time and velocity (``timed``, ``passed``) two edges away.
+    ``onset`` velocity at the film's cut-off, ``owed`` impulse that film and wall have still to pay to the
+    fluid, ``touching`` speed at the begin of a soft contact; for :class:`FilmRebound` ``inside`` the film or
+    not, the ``acceleration`` there, time and velocity (``timed``, ``passed``) two edges away, and the
+    ``count`` of impacts.
     """
 
     onset: float = math.nan
@@ -71,20 +78,20 @@ class WallMotion:
         self.film, self.contact, self.fraction = film, contact, fraction
         self.cut_off = film.cut_off if film else 0.0
         self.touch = film.floor if film else 0.0
+        self.added_mass = contact.added_mass if isinstance(contact, DryRebound) else 0.0
 
     def matters(self, gap: float, v: float) -> bool:
         """Whether the wall may act within the next step."""
         near = 2 * self.contact.edge if isinstance(self.contact, FilmRebound) else self.cut_off
         return gap + 2 * min(v, 0.0) < near + 0.1
 
-    def step(self, state: WallState, time: float, gap: float, v: float, force: float, mass: float):
-        """Gap, velocity and impacts one fluid step later."""
+    def step(self, state: WallState, time: float, gap: float, v: float, fluid: float, weight: float, mass: float):
+        """Gap, velocity and impacts one step later; ``weight`` is less buoyancy."""
         if isinstance(self.contact, FilmRebound):
-            return self._carried(state, self.contact, time, gap, v, force / mass)
-        if state.owed > 0:
-            paid = min(max(-force, 0.0), state.owed)
-            state.owed -= paid
-            force += paid
+            return self._carried(state, self.contact, time, gap, v, (fluid + weight) / mass)
+        paid = min(max(-fluid, min(state.owed, 0.0)), max(state.owed, 0.0))
+        state.owed -= paid
+        force = fluid + paid + weight
         impacts: list[Impact] = []
         elapsed = 0.0
         while elapsed < 1.0:
@@ -103,7 +110,7 @@ class WallMotion:
                     # It would be back within one step: at rest on the wall until something lifts it.
                     return self.touch, 0.0, [*impacts, Impact(time + elapsed, v_in, 0.0)] if v != 0 else impacts
                 impacts.append(Impact(time + elapsed, v_in, out))
-                state.owed += self.contact.added_mass * (out + v_in)
+                state.owed += self.added_mass * (out + v_in)
                 state.onset = math.nan
                 gap, v = self.touch, out
                 continue
@@ -132,8 +139,10 @@ class WallMotion:
         still = slope = 0.0
         if self.film is not None and middle > 0:
             still, slope = self.film.resistance(middle, v, state.onset if v < 0 else math.nan)
-        half = 0.5 * slope * dt / mass
-        new = (v * (1 + half) + (force + still) * dt / mass) / (1 - half)
+        inertia = mass + self.added_mass
+        half = 0.5 * slope * dt / inertia
+        new = (v * (1 + half) + (force / mass + still / inertia) * dt) / (1 - half)
+        state.owed += self.added_mass * (new - v - dt * force / mass)
         return gap + 0.5 * dt * (v + new), new
 
     def _soft_impact(self, state, time, gap, v, new_gap, new_v) -> list[Impact]:
