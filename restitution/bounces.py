@@ -1,7 +1,7 @@
 """A trajectory bounce by bounce: times of contact, apex heights, and how far one trajectory is from another.
 
-Trajectories are compared from their own first contacts on, without a shift that could be chosen. Where a contact is
-stretched in time it is counted from its end, when the rebound begins.
+Trajectories are compared from their own first contacts on, without a shift that could be chosen. Where a contact
+is stretched in time it is counted from its end, when the rebound begins.
 """
 
 from __future__ import annotations

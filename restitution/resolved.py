@@ -167,14 +167,18 @@ class ResolvedRun:
         return max(1, round(OUTPUT_D * self.flow.length / self.flow.speed))
 
     def vorticity(self) -> np.ndarray:
-        """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz); NaN inside the sphere."""
+        """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz); NaN inside the sphere.
+
+        By central differences, the velocity inside the sphere being the sphere's own.
+        """
         u = self.simulation.velocity
         middle = self.simulation.shape[1] // 2
         along, up = u[0, :, middle, :].astype(float), u[2, :, middle, :].astype(float)
-        curl = np.gradient(along, axis=1) - np.gradient(up, axis=0)
-        x, z = (np.arange(n) + 0.5 for n in curl.shape)
         centre, r = self.spheres.centres[0], self.spheres.radii[0]
+        x, z = (np.arange(n) + 0.5 for n in along.shape)
         inside = (x[:, None] - centre[0]) ** 2 + (z[None, :] - centre[2]) ** 2 < r**2
+        along[inside], up[inside] = self.spheres.velocities[0, [0, 2]]
+        curl = np.gradient(along, axis=1) - np.gradient(up, axis=0)
         return np.where(inside, np.nan, self.flow.scales.si(curl, "frequency"))
 
 

@@ -9,7 +9,7 @@ from restitution.console import show
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Declare ``report fig1``."""
+    """Declare ``report fig1`` and ``report fig2``."""
     parser = commands.add_parser(
         "report", help="regenerate a comparison report", description="Comparison reports."
     )
@@ -22,7 +22,37 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="which impact speed the figure takes (contact); the tables have all three",
     )
     add.add_argument("--out", metavar="FOLDER", default="reports/fig1", help="where to write it (reports/fig1)")
+    _add_runs(add)
     add.set_defaults(run=run_fig1)
+
+    add = reports.add_parser(
+        "fig2",
+        help="the bouncing sphere in time: simulated and measured",
+        description="Simulated and measured trajectories. Runs of the figure that are missing or stale are made "
+        "first (minutes), unchanged ones are not repeated; stopped ones are continued.",
+    )
+    add.add_argument(
+        "--full", action="store_true", help="make all shipped cases, not those of the figure alone (hours)"
+    )
+    add.add_argument("--fresh", action="store_true", help="repeat runs that have not changed")
+    add.add_argument("--out", metavar="FOLDER", default="reports/fig2", help="where to write it (reports/fig2)")
+    add.add_argument(
+        "--checks",
+        metavar="FILE",
+        default="benchmarks/sphere.json",
+        help="verification to show (benchmarks/sphere.json)",
+    )
+    _add_runs(add)
+    add.set_defaults(run=run_fig2)
+
+
+def _add_runs(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--runs",
+        metavar="FOLDER",
+        default="reports/runs",
+        help="where results of simulations are kept (reports/runs)",
+    )
 
 
 def run_fig1(args: argparse.Namespace) -> None:
@@ -33,5 +63,27 @@ def run_fig1(args: argparse.Namespace) -> None:
 
     if not args.out:
         raise InputError(Defect("names no folder", field="--out"))
-    for name in fig1.write(args.out, Speed(args.speed)):
+    for name in fig1.write(args.out, Speed(args.speed), args.runs):
         show(str(Path(args.out) / name))
+
+
+def run_fig2(args: argparse.Namespace) -> int:
+    """Write the Fig. 2 report and name its files; status 2 where a run stopped in error."""
+    import sys
+
+    from restitution.errors import Defect, InputError
+    from restitution.report import fig2
+
+    for option in ("out", "runs"):
+        if not getattr(args, option):
+            raise InputError(Defect("names no folder", field=f"--{option}"))
+
+    def say(text: str) -> None:
+        print(text, file=sys.stderr)  # noqa: T201
+
+    names, failed = fig2.write(args.out, args.runs, args.checks, args.full, args.fresh, say)
+    for name in names:
+        show(str(Path(args.out) / name))
+    for case, why in failed.items():
+        say(f"error: {case}: {why}")
+    return 2 if failed else 0

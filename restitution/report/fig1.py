@@ -7,7 +7,7 @@ stay below 0.1 d. All three definitions are tabulated, since the choice moves e_
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from restitution.conditions import Conditions
+    from restitution.kept_runs import KeptRun
 
 SPEED = Speed.CONTACT
 SIMULATED_BY_ABSTRACT = "gondret2002_st152"
@@ -30,27 +31,35 @@ OTHERS = ("legendre_2005", "barnocky_davis_1988", "two_way_lubrication", "ehd_co
 
 @dataclass(frozen=True)
 class Fig1:
-    """The tables behind the figure. ``every`` has the impacts under all three definitions of speed."""
+    """The tables behind the figure. ``every`` has the impacts under all three definitions of speed.
+
+    ``simulated`` names the kept runs of this package's solver whose impacts are among them.
+    """
 
     impacts: pd.DataFrame
     every: pd.DataFrame
     scores: pd.DataFrame
     conditions: dict[str, Conditions]
     notes: list[str]
+    simulated: dict[str, KeptRun] = field(default_factory=dict)
 
     @property
     def measured(self) -> pd.DataFrame:
         return self.impacts[self.impacts.kind == "measured"]
 
 
-def gather(speed: Speed = SPEED) -> Fig1:
-    """Impacts of all shipped trajectories that have any, and the scores of the laws against the measured ones."""
+def gather(speed: Speed = SPEED, runs: str | Path | None = None) -> Fig1:
+    """Impacts of all shipped trajectories that have any, and the scores of the laws against the measured ones.
+
+    ``runs`` is the folder of kept simulations: those that predict the rebound add a series that enters no score.
+    """
     import pandas as pd
 
     resources = [r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory"]
     resources = [r for r in resources if r.conditions.sphere.e_dry is not None]
     conditions = {r.name: r.conditions for r in resources}
     known = [laws.get(name) for name in (*EQ4_READINGS, *OTHERS)]
+    simulated = {} if runs is None else predicted(Path(runs))
     tables, scores, notes = [], [], []
     for definition in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
         rows: list[dict] = []
@@ -59,13 +68,32 @@ def gather(speed: Speed = SPEED) -> Fig1:
             rows += [row | _provenance(r) for row in found.rows]
             if definition == speed:
                 notes += [f"{r.name}: {note}" for note in found.notes]
+        for run in simulated.values():
+            own = run.impacts[run.impacts.speed_definition == str(definition)]
+            rows += [row | _provenance_of_run(run) for row in own.to_dict("records")]
         columns = [*datasets.schema("impact").columns, *_provenance(resources[0])]
         tables.append(pd.DataFrame(rows, columns=columns))
         measured = tables[-1][tables[-1].kind == "measured"]
         scores.append(comparison.score(known, measured, conditions).assign(speed_definition=str(definition)))
     every = pd.concat(tables, ignore_index=True)
     impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
-    return Fig1(impacts, every, pd.concat(scores, ignore_index=True), conditions, notes)
+    return Fig1(impacts, every, pd.concat(scores, ignore_index=True), conditions, notes, simulated)
+
+
+def predicted(folder: Path) -> dict[str, KeptRun]:
+    """Kept runs at ten cells in which the rebound is no input: dry restitution with the film resolved."""
+    from restitution import case_files
+    from restitution.kept_runs import read_run
+
+    found = {}
+    for name in case_files.names():
+        case = case_files.read_case(name)
+        varied = name.startswith("gondret_st152") and name != "gondret_st152_10"
+        if case.contact is not None and case.contact.mode == "dry" and not varied:
+            run = read_run(case, folder)
+            if run is not None and len(run.impacts):
+                found[name] = run
+    return found
 
 
 def _provenance(r: datasets.Resource) -> dict[str, object]:
@@ -80,11 +108,23 @@ def _provenance(r: datasets.Resource) -> dict[str, object]:
     }
 
 
-def write(folder: str | Path, speed: Speed = SPEED) -> list[str]:
+def _provenance_of_run(run: KeptRun) -> dict[str, object]:
+    return {
+        "used_in_simulation": False,
+        "experiment": "this package, resolved simulation",
+        "doi": "none",
+        "figure": "none",
+        "digitised_by": "not digitised",
+        "data": f"{run.case.name}/trajectory.csv",
+        "sha256": f"run {run.about.key}, code {run.about.code_hash}",
+    }
+
+
+def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = None) -> list[str]:
     """Write the report into ``folder``; returns the names of the files. The same input gives the same bytes."""
     from restitution.report import fig1_page, fig1_plot
 
-    fig1 = gather(speed)
+    fig1 = gather(speed, runs)
     drawing = fig1_plot.draw(fig1, speed)
     files = {
         "figure.svg": drawing.svg,

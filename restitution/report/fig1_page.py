@@ -114,7 +114,7 @@ def _impacts(fig1: content.Fig1, speed: str) -> list[dict]:
                 "note": row.note,
             }
         )
-    order = {name: i for i, name in enumerate(fig1.conditions)}
+    order = {name: i for i, name in enumerate((*fig1.conditions, *fig1.simulated))}
     return sorted(rows, key=lambda r: (order[r["record"]], r["impact"]))
 
 

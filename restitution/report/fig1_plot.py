@@ -36,6 +36,8 @@ SERIES = {
     "gondret2002_st27": ("Gondret et al. 2002, 6 mm (impact speed quoted)", "o", "white"),
     "li2012": ("Li et al. 2012, five drops", "^", "white"),
     "biegert2017": ("Biegert et al. 2017, simulation", "D", "#cccccc"),
+    "gondret_st": ("this package, simulation of 3 to 6 mm spheres in oil", "P", "#cccccc"),
+    "li_drop": ("this package, simulation of the drops", "X", "#cccccc"),
 }
 
 
@@ -63,7 +65,8 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
             handles = [h for h in ax.get_lines() if h.get_label() in {LINES[n][0] for n in names}]
             ax.legend(handles=handles, loc="lower right", fontsize=8.5, handlelength=3.6)
         left.set_ylabel(r"effective restitution  $e_{\mathrm{eff}}/e_{\mathrm{dry}}$  [-]")
-        points = [_key(name) for name in SERIES]
+        drawn = set(fig1.impacts.record.map(_series))
+        points = [_key(name) for name in SERIES if name in drawn]
         figure.legend(handles=points, loc="outside lower center", ncols=2, fontsize=8.5)
         return save(figure)
 

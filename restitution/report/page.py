@@ -28,6 +28,11 @@ def render(template: str, **content: Any) -> str:
     return environment.get_template(template).render(**known, **content)
 
 
+def png_image(png: bytes) -> str:
+    """The address of a picture that is in the page itself."""
+    return "data:image/png;base64," + base64.b64encode(png).decode()
+
+
 def _svg_image(svg: str) -> str:
     """The address of an image that is in the page itself; as an image its ids cannot clash with another's."""
     return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()

@@ -1,0 +1,126 @@
+"""Figure 2: the bouncing sphere in time, simulated and measured; what the report is made of.
+
+The report draws and scores kept runs (:mod:`restitution.kept_runs`). Those in ``SHORT`` are made where they are
+missing or stale; all other shipped cases are long, are made on request, and are shown with the date and the hash
+of the code that made them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+
+from restitution import case_files, datasets
+from restitution.bounces import Bounces, filmed
+from restitution.errors import Defect, InputError
+from restitution.files import write_folder
+from restitution.kept_runs import FOLDER, KeptRun, ensure, read_run
+from restitution.report.fig2_scores import scores
+from restitution.simulate import StoppedError, csv
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+RECORD = "gondret2002_st152"
+PUBLISHED = "biegert2017_st152"
+MAIN = "gondret_st152_10"
+SHORT = ("gondret_st152_10_measured", MAIN, "gondret_st152_10_soft")
+"""What the figure shows: contact modes (a), (b), (c) at ten cells a diameter."""
+VERIFICATION = Path("benchmarks/sphere.json")
+
+
+class Check(BaseModel):
+    """One figure of the solver against one from outside, as the benchmarks write it."""
+
+    name: str
+    measured: float | str
+    reference: float | str
+    error: float | str
+    source: str
+
+
+@dataclass(frozen=True)
+class Fig2:
+    """The kept runs by case, their scores, the records as filmed, and the solver's verification."""
+
+    runs: dict[str, KeptRun]
+    scores: pd.DataFrame
+    records: dict[str, Bounces]
+    checks: list[Check]
+    failed: dict[str, str] = field(default_factory=dict)
+
+
+def gather(
+    runs: str | Path = FOLDER,
+    verification: str | Path = VERIFICATION,
+    full: bool = False,
+    fresh: bool = False,
+    show: Callable[[str], None] | None = None,
+) -> Fig2:
+    """Read the kept runs, making those that are wanted: the short ones, with ``full`` all of them.
+
+    ``fresh`` repeats the wanted ones. A run that stops in error is named in ``failed`` and the report goes on.
+    """
+    runs, found, failed = Path(runs), {}, {}
+    for name in sorted(case_files.names(), key=lambda n: (n not in SHORT, n)):
+        case = case_files.read_case(name)
+        if full or name in SHORT:
+            try:
+                found[name] = ensure(case, runs, fresh, show)
+            except StoppedError as error:
+                failed[name] = str(error)
+        elif (kept := read_run(case, runs)) is not None:
+            found[name] = kept
+    wanted = {run.case.record for run in found.values() if run.case.record is not None}
+    records = {}
+    for name in sorted(wanted | {RECORD, PUBLISHED}):
+        resource = datasets.resource(name)
+        if resource.table == "trajectory" and resource.conditions.sphere.e_dry is not None:
+            first = 0.0 if resource.kind == "simulated" else None  # its zero is the end of its stretched contact
+            records[name] = filmed(datasets.load_track(name), resource.conditions, first)
+    return Fig2(found, scores(found, records), records, _checks(Path(verification)), failed)
+
+
+def _checks(path: Path) -> list[Check]:
+    """The solver's verification; none where the benchmarks have not been run."""
+    if not path.is_file():
+        return []
+    try:
+        return TypeAdapter(list[Check]).validate_python(json.loads(path.read_bytes()))
+    except (ValidationError, ValueError) as error:
+        raise InputError(Defect(f"is no list of checks: {error}".splitlines()[0], str(path))) from None
+
+
+def write(
+    folder: str | Path,
+    runs: str | Path = FOLDER,
+    verification: str | Path = VERIFICATION,
+    full: bool = False,
+    fresh: bool = False,
+    show: Callable[[str], None] | None = None,
+) -> tuple[list[str], dict[str, str]]:
+    """Write the report into ``folder``; returns the names of its files, and what runs failed and why."""
+    import pandas as pd
+
+    from restitution.report import fig2_page, fig2_plot
+
+    fig2 = gather(runs, verification, full, fresh, show)
+    figure, others = fig2_plot.draw(fig2), fig2_plot.draw_records(fig2)
+    flow = fig2_plot.draw_flow(fig2)
+    impacts = [run.impacts for run in fig2.runs.values() if len(run.impacts)]
+    files: dict[str, str | bytes] = {
+        "figure.svg": figure.svg,
+        "figure.png": figure.png,
+        "scores.csv": csv(fig2.scores, "%.5g"),
+        "impacts.csv": csv(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
+        "index.html": fig2_page.render(fig2, figure, others, flow),
+    }
+    files |= {"records.png": others.png} if others is not None else {}
+    files |= {"flow.png": flow.png} if flow is not None else {}
+    write_folder(folder, files)
+    return list(files), fig2.failed
