@@ -38,6 +38,7 @@ OUTPUT_D = 0.04
 _LONGEST = 4.0
 """A run without contact is given up after this many times the fall at the reference speed."""
 _LONGEST_RUN = 100
+_NEAR_D = 0.5
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,7 @@ class ResolvedRun:
                 raise InputError(Defect(str(error), file or case.name, None, "numerics")) from None
         self.warnings += [str(w.message) for w in caught]
         self.guard = DivergenceGuard()
+        self._unguarded = 0
 
     @property
     def step_s(self) -> float:
@@ -128,11 +130,15 @@ class ResolvedRun:
 
     def advance(self, observers: tuple = ()) -> None:
         """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed."""
-        speed = max(-float(self.spheres.velocities[0, 2]), 1e-3 * self.flow.speed)
         steps = _LONGEST_RUN
         if not self.spheres.impacts:
+            least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
+            speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
             steps = int(min(max(0.5 * self.gap_d * self.flow.length / speed, 1), steps))
-        self.simulation.run(steps, observers, guard=self.guard if steps >= _LONGEST_RUN // 2 else None)
+        self._unguarded += steps
+        due = self._unguarded >= _LONGEST_RUN
+        self.simulation.run(steps, observers, guard=self.guard if due else None)
+        self._unguarded = 0 if due else self._unguarded
 
     def snapshots(self, folder: Path) -> FieldOutput:
         """An observer that writes the flow for ParaView."""

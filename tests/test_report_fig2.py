@@ -1,0 +1,126 @@
+"""The Fig. 2 report: complete and self-contained from kept runs, which say when they are not of this code."""
+
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from restitution import case_files, datasets
+from restitution.cli import main
+from restitution.flow_pictures import FlowFrames, Frame
+from restitution.report import fig1, fig2
+from restitution.run_key import run_key
+from restitution.simulate import csv, simulated_impacts
+
+FALL = 8.146
+"""Free fall of the 3 mm sphere in oil, m/s2: 9.81 (7800 - 935)/(7800 + 935/2)."""
+
+
+def keep(folder, name, e, current=True):
+    """A ballistic trajectory in the place of a run: rebounds by ``e`` from 0.585 m/s, without drag."""
+    case = case_files.read_case(name)
+    speeds = [0.585 * e**k for k in range(1, 5)]
+    starts = np.cumsum([0.0, *(2 * v / FALL for v in speeds)])
+    time = np.arange(-0.02, starts[-1], 2e-4)
+    gap, velocity = np.where(time < 0, -0.585 * time, 0.0), np.where(time < 0, -0.585, 0.0)
+    for v, start, end in zip(speeds, starts[:-1], starts[1:], strict=True):
+        t, here = time - start, (time >= start) & (time < end)
+        gap = np.where(here, v * t - FALL / 2 * t**2, gap)
+        velocity = np.where(here, v - FALL * t, velocity)
+    trajectory = pd.DataFrame({"time_s": time, "gap_m": gap})
+    key = run_key(case).stated() if current else dict.fromkeys(("key", "case_hash", "code_hash", "data_hash"), "0")
+    about = key | {
+        "case": name, "date": "2001-02-03", "finished": True, "seconds": 1.0, "threads": 1, "steps": 10,
+        "shape": [8, 8, 8], "step_s": 1e-5, "numbers": dict.fromkeys(("Re", "Ma", "relaxation time", "grid Re"), 1.0),
+        "contacts": [
+            {"time_s": t, "speed_in_m_s": v / e, "speed_out_m_s": v} for t, v in zip(starts[:-1], speeds, strict=True)
+        ],
+    }  # fmt: skip
+    x = np.linspace(-1.5, 1.5, 12)
+    flow = FlowFrames({m: Frame(np.outer(x, x), x, x + 1.5, 0.1, 0.0) for m in ("before", "at", "after")})
+    (folder / name).mkdir(parents=True)
+    files = {
+        "trajectory.csv": csv(trajectory),
+        "velocity.csv": csv(pd.DataFrame({"time_s": time, "velocity_m_s": velocity})),
+        "impacts.csv": csv(simulated_impacts(trajectory, case)[0]),
+        "run.json": json.dumps(about),
+    }
+    for file, text in files.items():
+        (folder / name / file).write_text(text)
+    (folder / name / "flow.npz").write_bytes(flow.as_bytes())
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("fig2")
+    for name, e in zip(fig2.SHORT, (0.8, 0.75, 0.7), strict=True):
+        keep(folder / "runs", name, e)
+    keep(folder / "runs", "gondret_st152_16", 0.76, current=False)
+    checks = [{"name": "drag", "measured": 1.01, "reference": 1.0, "error": 0.01, "source": "Somebody 1982"}]
+    (folder / "sphere.json").write_text(json.dumps(checks))
+    files, failed = fig2.write(folder / "out", folder / "runs", folder / "sphere.json")
+    assert not failed
+    assert {p.name for p in (folder / "out").iterdir()} == set(files)
+    return folder
+
+
+def test_scores_of_ballistic_rebounds(report):
+    """Apexes (e^k v)^2 / 2g' and intervals 2 e^k v / g', by hand."""
+    scores = pd.read_csv(report / "out" / "scores.csv").set_index("case")
+    row = scores.loc["gondret_st152_10"]
+    assert row.apex_1_m == pytest.approx((0.75 * 0.585) ** 2 / 2 / FALL, rel=1e-3)
+    assert row.interval_2_s == pytest.approx(2 * 0.75**2 * 0.585 / FALL, rel=1e-3)
+    assert row.apex_1_error == pytest.approx(row.apex_1_m / 7.469e-3 - 1, rel=1e-3)
+    assert row.approach_speed_m_s == pytest.approx(0.585, rel=1e-3)
+    assert row.rms_gap_d > 0
+
+
+def test_page_loads_nothing_and_shows_all(report):
+    page = (report / "out" / "index.html").read_text()
+    assert not re.search(r'(src|href)="(?!data:)', page)
+    assert "<script" not in page
+    for name in (*fig2.SHORT, "gondret_st152_16", "Somebody 1982", "2001-02-03, code 0"):
+        assert name in page
+
+
+def test_stale_runs_are_shown_as_such(report):
+    scores = pd.read_csv(report / "out" / "scores.csv").set_index("case")
+    assert scores.stale.to_dict() == dict.fromkeys(fig2.SHORT, False) | {"gondret_st152_16": True}
+
+
+def test_second_report_gives_the_same_bytes(report, tmp_path):
+    fig2.write(tmp_path, report / "runs", report / "sphere.json")
+    for path in (report / "out").iterdir():
+        assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_page_without_verification_says_so(report, tmp_path):
+    fig2.write(tmp_path, report / "runs", tmp_path / "none.json")
+    assert "No figures are kept" in (tmp_path / "index.html").read_text()
+
+
+def test_verification_that_is_none_is_refused(report, tmp_path, capsys):
+    (tmp_path / "bad.json").write_text('{"name": 1}')
+    options = [
+        "--runs",
+        str(report / "runs"),
+        "--checks",
+        str(tmp_path / "bad.json"),
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    assert main(["report", "fig2", *options]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_predicted_rebounds_join_figure_1_without_a_score(report):
+    alone, joined = fig1.gather(), fig1.gather(runs=report / "runs")
+    own = joined.impacts[joined.impacts.record == "gondret_st152_10"]
+    assert len(own) >= 3
+    assert set(own.kind) == {"simulated"}
+    assert "gondret_st152_10_measured" not in set(joined.impacts.record)
+    pd.testing.assert_frame_equal(alone.scores, joined.scores)
+    assert set(datasets.names()).isdisjoint(joined.simulated)
