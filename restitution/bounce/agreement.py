@@ -36,7 +36,7 @@ class Agreement:
 
 
 def release_of(track: Track, conditions: Conditions) -> Release:
-    """The release that a recorded approach gives: its first frame, at the mean speed of its frames, wake developed.
+    """The release that a recorded approach gives: its first frame, its mean speed, wake developed.
 
     The mean over the frames that ``far`` takes, those outside the film; raises :class:`InputError` without any.
     """
@@ -58,8 +58,8 @@ def agreement(trajectory: Trajectory, track: Track, until: float = UNTIL) -> Agr
     d = trajectory.conditions.sphere.diameter
     if np.min(track.value) > _CENTRE * d:
         raise InputError(
-            f"the gap never falls below {np.min(track.value):.3g} m, {np.min(track.value) / d:.2g} d: is it the height "
-            "of the centre? It must be that of the lowest point"
+            f"the gap never falls below {np.min(track.value):.3g} m, {np.min(track.value) / d:.2g} d: is it the "
+            "height of the centre? It must be that of the lowest point"
         )
     if not trajectory.impacts:
         raise InputError("the model has no impact within its time: let it run longer")
@@ -68,13 +68,15 @@ def agreement(trajectory: Trajectory, track: Track, until: float = UNTIL) -> Agr
         raise InputError("the record has no bounce")
     level, frames = found.level or 0.0, _approach(track, found)
     gap, first = track.value - level, trajectory.impacts[0]
+    touch = 0.0  # time of the first contact by the record's clock, from the record alone where that can be
     if len(frames) > 0:
         near = frames[-1]
-        begin = first.time_s - gap[near] / first.v_in - track.time_s[near]
-        shift = _shift(trajectory, track.time_s[frames], gap[frames], begin)
+        speed = -np.polyfit(track.time_s[frames], gap[frames], 1)[0] if len(frames) > 1 else first.v_in
+        touch = track.time_s[near] + gap[near] / speed
+        shift = _shift(trajectory, track.time_s[frames], gap[frames], first.time_s - touch)
     else:
         shift = first.time_s
-    after = track.time_s + shift - first.time_s
+    after = track.time_s - touch
     use = (after >= 0) & (after <= until * math.sqrt(d / trajectory.conditions.gravity))
     residual = trajectory.gap(track.time_s[use] + shift) - gap[use]
     return Agreement(after[use], residual, shift, float(np.sqrt(np.mean(residual**2)) / d))

@@ -11,7 +11,7 @@ from restitution.errors import Defect, InputError
 from restitution.impact_speed import H_FILM
 from restitution.laws.brenner_1961 import Brenner1961
 from restitution.laws.drag import DragLaw, SchillerNaumann1935, steady
-from restitution.laws.history import HistoryLaw, MeiAdrian1992
+from restitution.laws.history import DorganLoth2007, HistoryLaw
 from restitution.laws.rebound import ReboundLaw
 from restitution.laws.resistance import ResistanceLaw
 from restitution.stokes import Speed
@@ -38,14 +38,15 @@ class Closures:
     """Adds 6 pi mu r v (lambda - 1) to the drag, so that the sum is Brenner's at small Re."""
     added_mass: Literal["wall", "free"] | None = "wall"
     """``wall``: exact C_M(h) of potential flow; ``free``: 1/2 at any gap."""
-    history: HistoryLaw | None = field(default_factory=MeiAdrian1992)
+    history: HistoryLaw | None = field(default_factory=DorganLoth2007)
+    """The default is the kernel made for the Re of measured rebounds, up to a few hundred."""
     rebound: ReboundLaw | None = None
     lubrication: bool | None = None
     """Whether the film is resolved; by default where there is no rebound law."""
     e_dry: float | None = None
     """Dry restitution, by default that of the conditions."""
     contact: float | None = None
-    """Gap in m at which the bodies touch: roughness or elastic film; by default the roughness of the conditions."""
+    """Gap in m at which the bodies touch, by roughness or elastic film; by default the conditions' roughness."""
     film: float = H_FILM
     """Edge of the film in diameters."""
 
@@ -80,7 +81,9 @@ class Closures:
             return 0.0
         if self.contact is not None:
             return self.contact
-        stated = [b.roughness for b in (conditions.sphere, conditions.wall) if b is not None and b.roughness is not None]
+        stated = [
+            b.roughness for b in (conditions.sphere, conditions.wall) if b is not None and b.roughness is not None
+        ]
         return max(stated, default=ROUGHNESS * conditions.sphere.radius) or ROUGHNESS * conditions.sphere.radius
 
     def dry(self, conditions: Conditions) -> float:
@@ -111,7 +114,9 @@ class Release:
         for name, low in (("gap", 0.0), ("speed", -math.inf)):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= low):
-                raise InputError(Defect(f"must be a number, at least {low:g}", field=f"release.{name}", value=f"{value:g}"))
+                raise InputError(
+                    Defect(f"must be a number, at least {low:g}", field=f"release.{name}", value=f"{value:g}")
+                )
         if self.developed is None:
             object.__setattr__(self, "developed", self.speed != 0)
 
@@ -131,4 +136,6 @@ def excess_weight(conditions: Conditions) -> float:
 def terminal_speed(conditions: Conditions, drag: DragLaw | None = None) -> float:
     """The steady speed in m/s far from walls at which ``drag`` balances gravity less buoyancy."""
     c = conditions
-    return steady(drag or SchillerNaumann1935(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity)
+    return steady(
+        drag or SchillerNaumann1935(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity
+    )

@@ -14,7 +14,7 @@ from restitution.bounce.kernel import Forces
 from restitution.bounce.tables import Table, constant, tabulate
 from restitution.conditions import Conditions
 from restitution.laws.drag import DragLaw
-from restitution.laws.history import HistoryLaw, MeiAdrian1992
+from restitution.laws.history import FiniteReynolds, HistoryLaw
 from restitution.laws.resistance import ResistanceLaw
 
 GREATEST_RE = 2e5
@@ -24,10 +24,17 @@ _LN_RE = (-14.0, 13.0, 0.1)
 
 @cache
 def drag_table(law: DragLaw | None) -> Table:
-    """C_D Re/24 against Re; interpolation error below 1e-7 for smooth laws, at the kinks of piecewise ones 1e-3."""
+    """C_D Re/24 against Re; error below 1e-6 for smooth laws, next to the kinks of piecewise ones 1e-2."""
     if law is None:
         return constant(0.0)
-    return tabulate(lambda Re: law(Re, out_of_range="ignore") * Re / 24, 1e-8, 1e7, 0.05)
+
+    def factor(Re: np.ndarray) -> np.ndarray:
+        return law(Re, out_of_range="ignore") * Re / 24
+
+    def slope(Re: np.ndarray) -> np.ndarray:
+        return factor(Re) + law.derivative(Re, out_of_range="ignore") * Re**2 / 24
+
+    return tabulate(factor, 1e-8, 1e7, 0.05, slope)
 
 
 @cache
@@ -59,12 +66,13 @@ def _force_numbers(conditions: Conditions, closures: Closures, end: float) -> Fo
     r, nu = sphere.radius, fluid.viscosity / fluid.density
     stokes = 6 * math.pi * fluid.viscosity * r
     free_fall = math.sqrt(c.gravity * sphere.diameter)
-    terms = history.modes(r, nu, slowest=0.01 / end, fastest=1e5 * free_fall / r)
+    terms = history.modes(r, nu, slowest=0.01 / end, fastest=1e6 * free_fall / r)
     share, slope = _memory(closures.history, terms, r, nu)
     on = closures.history is not None
     keep = slice(None) if on else slice(0)
     return Forces(
-        mass=sphere.mass + (stokes * terms.tail / math.pi if on else 0.0),
+        mass=sphere.mass,
+        tail=stokes * terms.tail * history.BASSET if on else 0.0,
         fluid_mass=fluid.density * math.pi * sphere.diameter**3 / 6,
         weight=excess_weight(c),
         radius=r,
@@ -87,10 +95,10 @@ def _force_numbers(conditions: Conditions, closures: Closures, end: float) -> Fo
 def _memory(law: HistoryLaw | None, terms: history.Modes, r: float, nu: float) -> tuple[np.ndarray, np.ndarray]:
     """G of every term and its slope, on the grid of ln(Re)."""
     ln_Re = np.arange(*_LN_RE)
-    if not isinstance(law, MeiAdrian1992):
+    if not isinstance(law, FiniteReynolds):
         return np.full((len(ln_Re), len(terms.rates)), history.BASSET), np.zeros((len(ln_Re), len(terms.rates)))
-    ln_beta = np.log(terms.rates) + np.log(history.crossover(law, np.exp(ln_Re)) * r**2 / nu)[:, None]
-    share = history.shape(ln_beta)
+    ln_beta = np.log(terms.rates) + np.log(law.crossover(np.exp(ln_Re)) * r**2 / nu)[:, None]
+    share = history.shape(ln_beta, law.c_1)
     return share, np.gradient(share, _LN_RE[2], axis=0, edge_order=2)
 
 

@@ -10,7 +10,7 @@ which is Lagrange's equation of sphere and potential flow with dissipative force
 stiff (rates up to 1e8 per s) and so is the film, hence an L-stable, stiffly accurate singly diagonal implicit
 Runge-Kutta method of order 4 with an embedded one of order 3 for the step (Hairer & Wanner, Solving Ordinary
 Differential Equations II, table IV.6.5). In each stage all Z_j follow from v, so there is one equation in one
-unknown, whatever the number of terms. The works of drag, wall and history are integrated along, by the same weights.
+unknown, whatever the number of terms. The works of drag, wall and history are integrated along.
 
 Everything compiled stands in this one file: Numba's cache looks at the file of the function it caches, so an edit
 of anything inlined here compiles anew.
@@ -32,7 +32,8 @@ class Forces(NamedTuple):
     """What the flight depends on, in SI; forces that are off have zero factors or constant tables."""
 
     mass: float
-    """Sphere and the added mass of the history terms left out at the fast end."""
+    tail: float
+    """Added mass of the history terms faster than the fastest."""
     fluid_mass: float
     weight: float
     """Gravity less buoyancy."""
@@ -61,7 +62,7 @@ class Forces(NamedTuple):
 
 
 FELL, ROSE, END, FULL, STUCK = 0, 1, 2, 3, 4
-"""Why a stretch ended: gap ``low``, gap ``high``, end time, no room for more steps, a step that cannot be solved."""
+"""Why a stretch ended: gap ``low``, gap ``high``, end time, no room for more steps, an unsolvable step."""
 
 _GAMMA = 0.25
 _A = np.array(
@@ -99,7 +100,7 @@ def _mass(f, h):
     """M(h) and M'(h)."""
     eps = max(h / f.radius, 1e-12)
     C, slope = _look(f.added_mass, math.log(eps))
-    return f.mass + C * f.fluid_mass, slope / eps / f.radius * f.fluid_mass
+    return f.mass + f.tail + C * f.fluid_mass, slope / eps / f.radius * f.fluid_mass
 
 
 @njit(error_model="numpy")
@@ -113,7 +114,9 @@ def _share(f, ln_Re, share):
     h = 1 / f.memory_per_step
     a, b, c, d = s * s * (1 + 2 * t), t * t * (3 - 2 * t), h * s * s * t, -h * t * t * s
     for j in range(len(share)):
-        share[j] = a * f.memory[i, j] + b * f.memory[i + 1, j] + c * f.memory_slope[i, j] + d * f.memory_slope[i + 1, j]
+        share[j] = (
+            a * f.memory[i, j] + b * f.memory[i + 1, j] + c * f.memory_slope[i, j] + d * f.memory_slope[i + 1, j]
+        )
 
 
 @njit(error_model="numpy")
@@ -141,7 +144,15 @@ def _forces(f, inviscid, h, v, Z_explicit, g, Z, share):
     return drag, wall_factor * v, f.history * memory, slope + wall_factor + f.history * memory_slope
 
 
-@njit(cache=True, error_model="numpy")
+def _kept(function):
+    """Compile, and keep the result beside this file or in the user's cache folder, where either can be written."""
+    try:
+        return njit(function, cache=True, error_model="numpy")
+    except RuntimeError:  # numba found no folder to write to: compiled anew in every process
+        return njit(function, error_model="numpy")
+
+
+@_kept
 def fly(f, inviscid, t, end, h, v, Z, low, high, dt, growth, tolerance, out, works):
     """Integrate from (t, h, v, Z) until the gap falls to ``low`` or rises to ``high``, or until ``end``.
 

@@ -40,7 +40,7 @@ class IntegrationError(RuntimeError):
 
 @dataclass(frozen=True)
 class Impact:
-    """One contact: time in s, speeds in m/s (both positive) and e = v_out/v_in. The sphere rests where v_out is 0."""
+    """One contact: time in s, speeds in m/s, both positive. The sphere rests where v_out is 0."""
 
     time_s: float
     v_in: float
@@ -65,15 +65,15 @@ class Trajectory:
     impacts: list[Impact]
     conditions: Conditions
     closures: Closures
-    energy_J: NDArray = field(repr=False)
+    energy: NDArray = field(repr=False)
     """Kinetic energy of sphere and added mass, and gravity less buoyancy times gap."""
-    lost_J: NDArray = field(repr=False)
+    lost: NDArray = field(repr=False)
     """Columns: to drag, to the wall's resistance, to history, in impacts; each from the start to that row."""
 
     @property
     def imbalance(self) -> float:
         """Largest |energy + losses - initial energy| over the initial energy: the error of the integration."""
-        total = self.energy_J + self.lost_J.sum(axis=1)
+        total = self.energy + self.lost.sum(axis=1)
         return float(np.max(np.abs(total - total[0])) / abs(total[0]))
 
     def gap(self, time: NDArray | float) -> NDArray:
@@ -81,9 +81,7 @@ class Trajectory:
         i, x, dt = self._place(time)
         h, v = self.gap_m, self.velocity_m_s
         y = 1 - x
-        return (
-            y**2 * ((1 + 2 * x) * h[i] + x * dt * v[i]) + x**2 * ((1 + 2 * y) * h[i + 1] - y * dt * v[i + 1])
-        )
+        return y**2 * ((1 + 2 * x) * h[i] + x * dt * v[i]) + x**2 * ((1 + 2 * y) * h[i + 1] - y * dt * v[i + 1])
 
     def velocity(self, time: NDArray | float) -> NDArray:
         """Velocity in m/s at ``time`` (s), the derivative of :meth:`gap`."""
@@ -101,16 +99,15 @@ class Trajectory:
         return i, (time - t[i]) / dt, dt
 
     def apexes(self) -> NDArray:
-        """Greatest gap in m of each flight between two impacts; of the last one only if it has come to its apex."""
-        found = []
-        for k, impact in enumerate(self.impacts):
-            if impact.v_out == 0:
-                break
-            ends = self.impacts[k + 1].time_s if k + 1 < len(self.impacts) else math.inf
-            flight = (self.time_s >= impact.time_s) & (self.time_s <= ends)
-            if ends < math.inf or self.velocity_m_s[-1] < 0:
-                found.append(float(self.gap_m[flight].max()))
-        return np.array(found)
+        """Greatest gap in m of each flight after an impact, in order; of the last one only if it got there."""
+        v = self.velocity_m_s
+        turning = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0) & (np.diff(self.time_s) > 0))
+        dt = np.diff(self.time_s)[turning]
+        v0, v1, slope = v[turning], v[turning + 1], np.diff(self.gap_m)[turning] / dt
+        a, b = 3 * (v0 + v1) - 6 * slope, 6 * slope - 4 * v0 - 2 * v1
+        x = 2 * v0 / (-b + np.sqrt(np.maximum(b**2 - 4 * a * v0, 0)))  # where the velocity between the steps is 0
+        first = self.impacts[0].time_s if self.impacts else math.inf
+        return self.gap(self.time_s[turning] + x * dt)[self.time_s[turning] >= first]
 
     def table(self, time: NDArray | None = None) -> pd.DataFrame:
         """Columns ``time_s``, ``gap_m``, ``velocity_m_s``, at ``time`` or at the steps."""
@@ -163,13 +160,27 @@ class _Run:
     """State of one integration and what it has recorded."""
 
     def __init__(
-        self, conditions: Conditions, closures: Closures, touch: float, release: Release, end: float, tolerance: float
+        self,
+        conditions: Conditions,
+        closures: Closures,
+        touch: float,
+        release: Release,
+        end: float,
+        tolerance: float,
     ):
-        self.conditions, self.closures, self.touch, self.end, self.tolerance = conditions, closures, touch, end, tolerance
+        self.conditions, self.closures, self.touch, self.end, self.tolerance = (
+            conditions,
+            closures,
+            touch,
+            end,
+            tolerance,
+        )
         self.forces: Forces = forces(conditions, closures, end)
         self.edge = closures.film * conditions.sphere.diameter
         self.t, self.h, self.v = 0.0, float(release.gap), -float(release.speed)
         self.Z = np.full(len(self.forces.rates), self.v if release.developed else 0.0)
+        if not release.developed:
+            self.v = self._shared(self.v, 0.0, self.h)
         self.inside = self.h < self.edge
         self.scale = conditions.sphere.radius / math.sqrt(conditions.gravity * conditions.sphere.diameter)
         self.dt = 1e-4 * self.scale
@@ -188,8 +199,8 @@ class _Run:
         out, works = np.empty((_ROWS, 3)), np.zeros((_ROWS, 3))
         black_box = self.inside and self.closures.rebound is not None
         n, why, _ = fly(
-            self.forces, black_box, self.t, self.end, self.h, self.v, self.Z, low, high, self.dt, 3.0, self.tolerance,
-            out, works,
+            self.forces, black_box, self.t, self.end, self.h, self.v, self.Z, low, high,
+            self.dt, 3.0, self.tolerance, out, works,
         )  # fmt: skip
         self.rows.append(out[:n])
         self.lost.append(self.so_far + np.hstack([works[:n], np.zeros((n, 1))]))
@@ -207,18 +218,28 @@ class _Run:
             raise IntegrationError(f"the flight {what} near t = {self.t:.6g} s, gap {self.h:.3g} m")
 
     def _impact(self) -> None:
-        v_in, M = -self.v, self._mass(self.touch)
+        v_in, whole = -self.v, self._mass(self.touch)
+        M, tail = whole - self.forces.tail, self.forces.tail
         v_out = self._restitution(v_in) * v_in
         # Sphere and added mass rise as in free flight, at most; what stays within the film limit rests.
         if M * v_out**2 / (2 * self.forces.weight) < self.lowest_apex or len(self.impacts) >= _MOST_IMPACTS:
             v_out = 0.0
         self.impacts.append(Impact(self.t, v_in, v_out))
-        self.so_far[3] += M / 2 * (v_in**2 - v_out**2)
         self.v, self.inside, self.dt = v_out, self.edge > self.touch, 1e-8 * self.scale
+        self.so_far[3] += M / 2 * (v_in**2 - v_out**2)
         if v_out == 0:
+            self.so_far[3] += tail / 2 * v_in**2
             self.rows.append(np.array([[self.t, self.h, 0.0], [self.end, self.h, 0.0]]))
             self.lost.append(np.array([self.so_far, self.so_far]))
             self.t = self.end
+            return
+        self.v = self._shared(v_out, -v_in, self.touch)
+        self.so_far[2] += M / 2 * v_out**2 + tail / 2 * v_in**2 - whole / 2 * self.v**2
+
+    def _shared(self, v: float, before: float, gap: float) -> float:
+        """The velocity after a jump to ``v``, once the fastest history terms, at ``before``, have followed."""
+        share = self.forces.tail / self._mass(gap)
+        return float(v - share * (v - before))
 
     def _restitution(self, v_in: float) -> float:
         law, e_dry = self.closures.rebound, self.closures.dry(self.conditions)
@@ -231,7 +252,7 @@ class _Run:
         from restitution.bounce.tables import look
 
         C = look(self.forces.added_mass, np.maximum(np.asarray(gap) / self.forces.radius, 1e-12))
-        return self.forces.mass + C * self.forces.fluid_mass
+        return self.forces.mass + self.forces.tail + C * self.forces.fluid_mass
 
     def trajectory(self) -> Trajectory:
         t, h, v = np.concatenate(self.rows).T

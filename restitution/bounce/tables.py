@@ -23,19 +23,16 @@ class Table(NamedTuple):
 
 
 def tabulate(
-    function: Callable[[NDArray], NDArray], low: float, high: float, step: float, slope: Callable | None = None
+    function: Callable[[NDArray], NDArray],
+    low: float,
+    high: float,
+    step: float,
+    slope: Callable[[NDArray], NDArray],
 ) -> Table:
-    """``function`` between x = ``low`` and ``high``; ``slope`` is dy/d ln(x), by a spline where it is not given."""
-    count = int(np.ceil(np.log(high / low) / step)) + 1
-    s = np.log(low) + step * np.arange(count)
-    y = np.asarray(function(np.exp(s)), float) * np.ones(count)
-    if slope is not None:
-        dy = np.asarray(slope(np.exp(s)), float) * np.ones(count)
-    else:
-        from scipy.interpolate import CubicSpline
-
-        dy = CubicSpline(s, y)(s, 1)
-    return Table(float(s[0]), 1 / step, np.ascontiguousarray(y), np.ascontiguousarray(dy))
+    """``function`` between x = ``low`` and ``high``, and its ``slope`` dy/d ln(x)."""
+    s = np.log(low) + step * np.arange(int(np.ceil(np.log(high / low) / step)) + 1)
+    x = np.exp(s)
+    return Table(float(s[0]), 1 / step, np.asarray(function(x), float), np.asarray(slope(x), float))
 
 
 def constant(y: float) -> Table:

@@ -14,7 +14,9 @@ import numpy as np
 from restitution.laws.base import CheckValue, Law, Status
 
 _FLUIDS = "public package 'fluids' 1.x, fluids.drag, evaluated independently"
-_STANDARD = "standard drag curve, Clift, Grace & Weber 1978 as in 'fluids'; tolerance is the difference of the fits"
+_STANDARD = (
+    "standard drag curve, Clift, Grace & Weber 1978 as in 'fluids'; tolerance is the difference of the fits"
+)
 
 
 @dataclass(frozen=True)
@@ -69,9 +71,13 @@ class BrownLawler2003(DragLaw):
     formula: ClassVar = "24/Re*(1 + 0.15*Re**0.681) + 0.407/(1 + 8710/Re)"
     validity: ClassVar = (0.0, 2e5)
     validity_source: ClassVar = "up to the drag crisis"
-    reference: ClassVar = "Brown & Lawler, J. Environ. Eng. 129, 222 (2003), doi:10.1061/(ASCE)0733-9372(2003)129:3(222)"
+    reference: ClassVar = (
+        "Brown & Lawler, J. Environ. Eng. 129, 222 (2003), doi:10.1061/(ASCE)0733-9372(2003)129:3(222)"
+    )
     status: ClassVar = Status.UNVERIFIED
-    evidence: ClassVar = "widely quoted; the paper was not opened; within 3 % of the standard drag curve where checked"
+    evidence: ClassVar = (
+        "widely quoted; the paper was not opened; within 3 % of the standard drag curve where checked"
+    )
     checks: ClassVar = (
         CheckValue({"Re": 164.0}, 0.8519, 0.02, _STANDARD),
         CheckValue({"Re": 1000.0}, 0.4711, 0.01, _STANDARD),
@@ -126,7 +132,9 @@ class Abraham1970(DragLaw):
     validity_source: ClassVar = "as commonly quoted"
     reference: ClassVar = "Abraham, Phys. Fluids 13, 2194 (1970)"
     status: ClassVar = Status.UNVERIFIED
-    evidence: ClassVar = "widely quoted; gives the terminal speeds that ten Cate et al. 2002 state for their fluids"
+    evidence: ClassVar = (
+        "widely quoted; gives the terminal speeds that ten Cate et al. 2002 state for their fluids"
+    )
     checks: ClassVar = (
         CheckValue({"Re": 1.5}, 20.58, 0.6, "ten Cate et al. 2002, Table I: the weight at the stated 0.038 m/s"),
         CheckValue({"Re": 11.6}, 3.90, 0.12, "ten Cate et al. 2002, Table I: the weight at the stated 0.091 m/s"),
