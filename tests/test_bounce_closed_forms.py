@@ -10,6 +10,7 @@ from restitution import datasets, laws
 from restitution.bounce import Closures, Release, bounce, terminal_speed
 from restitution.bounce.forces import forces
 from restitution.bounce.kernel import END, fly
+from restitution.bounce.wake import NONE
 from restitution.conditions import Conditions
 from restitution.laws.history import Basset1888, MeiAdrian1992
 
@@ -148,7 +149,7 @@ def final_velocity(closures, speed, steps, T=0.03):
     Z = np.full(len(f.rates), -speed)
     out, works = np.empty((steps + 2, 3)), np.zeros((steps + 2, 3))
     n, why, _ = fly(
-        f, False, 0.0, T, 0.02, -speed, Z, 0.0, math.inf, T / steps * (1 + 1e-12), 1.0, math.inf, out, works
+        f, NONE, False, 0.0, T, 0.02, -speed, Z, 0.0, math.inf, T / steps * (1 + 1e-12), 1.0, math.inf, out, works
     )
     assert why == END
     return out[n - 1, 2]

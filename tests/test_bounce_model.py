@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from restitution import datasets, laws
-from restitution.bounce import Closures, Release, bounce, terminal_speed
+from restitution.bounce import Closures, OwnWake, Release, bounce, terminal_speed
 from restitution.bounce.agreement import agreement, release_of
 from restitution.bounce.sensitivity import forces_off
+from restitution.bounce.wake import left_behind
 from restitution.conditions import Conditions
 from restitution.errors import InputError
 from restitution.impacts import find_impacts
@@ -104,6 +105,53 @@ def test_first_record_with_published_closures():
     assert agreement(path, RECORD).rms_d < 0.15
 
 
+def test_quoted_impact_speed_is_met():
+    conditions, track = datasets.resource("gondret2002_st27").conditions, datasets.load_track("gondret2002_st27")
+    law = Closures(rebound=laws.get("eq4_rational"))
+    path = bounce(conditions, release_of(track, conditions, law), law, end=0.4)
+    assert path.impacts[0].v_in == pytest.approx(0.518, rel=1e-6)
+    assert agreement(path, track).rms_d < 0.0105
+
+
+def test_elastic_film_stops_the_approach_earlier():
+    soft = Closures(reduced_modulus=1e7)
+    paths = [bounce(GONDRET, RELEASE, c, end=0.1) for c in (Closures(), Closures(reduced_modulus=55e9), soft)]
+    assert paths[0].gap_m.min() == paths[1].gap_m.min()  # steel: thinner than the roughness
+    film = laws.get("yang_hunt_2008")(paths[2].impacts[0].v_in, 0.01, 1e7, 1.5e-3)
+    assert paths[2].gap_m.min() == pytest.approx(film, rel=0.1)
+    assert paths[2].apexes()[0] > paths[0].apexes()[0]
+
+
+def test_wake_has_the_momentum_of_the_drag():
+    """Steady fall leaves D/U per unit of length, on an area that grows as pi nu t."""
+    U, D = 0.586, 1e-3
+    t = np.linspace(0, 0.02, 30)
+    wake = left_behind(
+        OwnWake(3.0), t, 0.0117 - U * t, np.full(30, -U), False, np.full(30, D), 1.07e-5, 935.0, 1.5e-3
+    )
+    area = 3 * math.pi * 1.5e-3**2
+    assert wake.speed[100] * 935 * area == pytest.approx(-D / U, rel=1e-12)
+    age, spread = 0.05, area + 4 * math.pi * 1.07e-5 * 0.05
+    assert wake.speed[100] / (1 + wake.rate * age) * 935 * spread == pytest.approx(-D / U, rel=1e-12)
+    assert wake.time[100] == pytest.approx((0.0117 - 100 / wake.per_gap) / U, rel=1e-9)
+
+
+def test_one_constant_for_all_records():
+    """K of Eq. (4) fitted to St 152 alone, with the wake; the same K then serves the other laboratory."""
+    from scipy.optimize import least_squares
+
+    def closures(K):
+        return Closures(rebound=laws.get("eq4_exponential", K=float(K[0])), wake=OwnWake())
+
+    def compare(K):
+        return agreement(bounce(GONDRET, RELEASE, closures(K), end=0.3), RECORD)
+
+    K = least_squares(lambda x: compare(x).residual_m / 3e-3, [12.0], diff_step=1e-2).x
+    assert compare(K).rms_d < 0.03
+    for name in DROPS:
+        assert agreement(drop(name, closures(K)), datasets.load_track(name)).rms_d < 0.08
+
+
 def test_first_record_with_two_constants_fitted():
     """K of Eq. (4) and the slope of f_H of the history kernel; a plain least-squares fit of the frames."""
     from scipy.optimize import least_squares
@@ -151,6 +199,8 @@ def test_every_force_matters_in_its_sense():
         (lambda: Closures(rebound=laws.get("bertin_2024")), "rebound"),
         (lambda: Closures(e_dry=1.2), "e_dry"),
         (lambda: Closures(film=math.nan), "film"),
+        (lambda: Closures(reduced_modulus=-1.0), "reduced_modulus"),
+        (lambda: OwnWake(0.0), "wake.area"),
         (lambda: Release(math.nan), "release.gap"),
         (lambda: Release(-1e-3), "release.gap"),
         (lambda: Release(1e-3, math.inf), "release.speed"),

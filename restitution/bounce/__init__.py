@@ -13,10 +13,21 @@ Vertical motion, gap h > 0, velocity v = dh/dt:
 
 :mod:`~restitution.bounce.closures` says what may be chosen, :mod:`~restitution.bounce.kernel` how it is
 integrated, :mod:`~restitution.bounce.history` how the memory is kept, :mod:`~restitution.bounce.added_mass` what
-the wall does to the added mass, :mod:`~restitution.bounce.sensitivity` which force matters.
+the wall does to the added mass, :mod:`~restitution.bounce.wake` what a rebound meets,
+:mod:`~restitution.bounce.agreement` how far a record is, :mod:`~restitution.bounce.sensitivity` what matters.
 """
 
 from restitution.bounce.closures import Closures, Release, terminal_speed
 from restitution.bounce.model import Impact, IntegrationError, Trajectory, bounce
+from restitution.bounce.wake import OwnWake
 
-__all__ = ["Closures", "Impact", "IntegrationError", "Release", "Trajectory", "bounce", "terminal_speed"]
+__all__ = [
+    "Closures",
+    "Impact",
+    "IntegrationError",
+    "OwnWake",
+    "Release",
+    "Trajectory",
+    "bounce",
+    "terminal_speed",
+]

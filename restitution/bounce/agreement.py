@@ -9,15 +9,16 @@ the recorded sphere comes to rest.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.bounce.closures import Release
-from restitution.bounce.model import Trajectory
+from restitution.bounce.closures import Closures, Release
+from restitution.bounce.model import Trajectory, bounce
 from restitution.conditions import Conditions
 from restitution.errors import InputError
+from restitution.laws.legendre import Legendre2005
 from restitution.tracks import Contacts, Track, contacts
 
 UNTIL = 8.0
@@ -35,18 +36,41 @@ class Agreement:
     rms_d: float
 
 
-def release_of(track: Track, conditions: Conditions) -> Release:
-    """The release that a recorded approach gives: its first frame, its mean speed, wake developed.
+def release_of(track: Track, conditions: Conditions, closures: Closures | None = None) -> Release:
+    """The release that a record gives, its wake developed.
 
-    The mean over the frames that ``far`` takes, those outside the film; raises :class:`InputError` without any.
+    With a recorded approach: its first frame, and the mean speed of its frames outside the film. Of a record that
+    begins on a rebound: five diameters above the wall, at the speed from which the model reaches the far impact
+    speed that the conditions quote. Raises :class:`InputError` where there is neither.
     """
     found = contacts(track)
     frames = _approach(track, found)
+    if len(frames) == 0 and conditions.impact is not None:
+        return release_reaching(conditions.impact.speed, conditions, closures)
     frames = frames[track.value[frames] - (found.level or 0.0) > 0.1 * conditions.sphere.diameter]
     if len(frames) < 2:
         raise InputError("the record has no approach: give the release, by gap and speed")
     slope = np.polyfit(track.time_s[frames], track.value[frames], 1)[0]
     return Release(float(track.value[frames[0]] - (found.level or 0.0)), float(-slope), developed=True)
+
+
+def release_reaching(
+    speed: float, conditions: Conditions, closures: Closures | None = None, gap: float | None = None
+) -> Release:
+    """The release at ``gap`` (m, by default five diameters) that meets the wall with the far ``speed`` (m/s)."""
+    from scipy.optimize import brentq
+
+    gap = gap or 5 * conditions.sphere.diameter
+    # The far speed is what the approach outside the film would meet the wall with, whatever the film then does.
+    closures = replace(closures or Closures(), rebound=Legendre2005(), lubrication=False, e_dry=1.0)
+
+    def excess(start: float) -> float:
+        flight = bounce(conditions, Release(gap, start), closures, end=10 * gap / speed)
+        return (flight.impacts[0].v_in if flight.impacts else 0.0) - speed
+
+    if excess(3 * speed) < 0:
+        raise InputError(f"no release {gap:g} m above the wall meets it with {speed:g} m/s: is the unit right?")
+    return Release(gap, float(brentq(excess, 0.1 * speed, 3 * speed, xtol=1e-9)))
 
 
 def agreement(trajectory: Trajectory, track: Track, until: float = UNTIL) -> Agreement:

@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass, field, fields
 from typing import Literal
 
+from restitution.bounce.wake import OwnWake
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.impact_speed import H_FILM
 from restitution.laws.brenner_1961 import Brenner1961
 from restitution.laws.drag import DragLaw, SchillerNaumann1935, steady
+from restitution.laws.film import YangHunt2008
 from restitution.laws.history import DorganLoth2007, HistoryLaw
 from restitution.laws.rebound import ReboundLaw
 from restitution.laws.resistance import ResistanceLaw
@@ -40,6 +42,8 @@ class Closures:
     """``wall``: exact C_M(h) of potential flow; ``free``: 1/2 at any gap."""
     history: HistoryLaw | None = field(default_factory=DorganLoth2007)
     """The default is the kernel made for the Re of measured rebounds, up to a few hundred."""
+    wake: OwnWake | None = None
+    """The fluid that an approach leaves moving, met by the rebound; not of the literature, so off by default."""
     rebound: ReboundLaw | None = None
     lubrication: bool | None = None
     """Whether the film is resolved; by default where there is no rebound law."""
@@ -47,6 +51,9 @@ class Closures:
     """Dry restitution, by default that of the conditions."""
     contact: float | None = None
     """Gap in m at which the bodies touch, by roughness or elastic film; by default the conditions' roughness."""
+    reduced_modulus: float | None = None
+    """E* of the two bodies in Pa: the contact gap is then at least the elastohydrodynamic one (Yang & Hunt 2008)
+    at the speed with which the sphere enters the film."""
     film: float = H_FILM
     """Edge of the film in diameters."""
 
@@ -70,15 +77,26 @@ class Closures:
                     value=self.rebound.name,
                 )
             )
-        for name, low, high in (("e_dry", 0.0, 1.0), ("contact", 0.0, math.inf), ("film", 0.0, 10.0)):
+        bounds = {
+            "e_dry": (0.0, 1.0), "contact": (0.0, math.inf),
+            "reduced_modulus": (1.0, math.inf), "film": (0.0, 10.0),
+        }  # fmt: skip
+        for name, (low, high) in bounds.items():
             value = getattr(self, name)
             if value is not None and not low <= value <= high:  # also NaN
                 raise InputError(Defect(f"must lie in [{low:g}, {high:g}]", field=name, value=f"{value:g}"))
 
-    def contact_gap(self, conditions: Conditions) -> float:
-        """Gap in m at which the bodies touch; 0 with a rebound law, whose gap is the camera's."""
+    def contact_gap(self, conditions: Conditions, speed: float = 0.0) -> float:
+        """Gap in m at which bodies that enter the film with ``speed`` touch; 0 with a rebound law."""
         if self.rebound is not None:
             return 0.0
+        rough = self._roughness(conditions)
+        if self.reduced_modulus is None or speed <= 0:
+            return rough
+        elastic = YangHunt2008()(speed, conditions.fluid.viscosity, self.reduced_modulus, conditions.sphere.radius)
+        return max(rough, float(elastic))
+
+    def _roughness(self, conditions: Conditions) -> float:
         if self.contact is not None:
             return self.contact
         stated = [

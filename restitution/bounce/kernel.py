@@ -65,6 +65,7 @@ FELL, ROSE, END, FULL, STUCK = 0, 1, 2, 3, 4
 """Why a stretch ended: gap ``low``, gap ``high``, end time, no room for more steps, an unsolvable step."""
 
 _GAMMA = 0.25
+_AT = np.array([1 / 4, 3 / 4, 11 / 20, 1 / 2, 1])
 _A = np.array(
     [
         [1 / 4, 0, 0, 0, 0],
@@ -120,20 +121,34 @@ def _share(f, ln_Re, share):
 
 
 @njit(error_model="numpy")
-def _forces(f, inviscid, h, v, Z_explicit, g, Z, share):
+def _wake(wake, radius, t, h):
+    """Velocity of the fluid that the approach has set moving (restitution.bounce.wake)."""
+    at = h * wake.per_gap
+    i = int(at)
+    if h <= 0 or i >= len(wake.speed) - 1:
+        return 0.0
+    x = at - i
+    speed = (1 - x) * wake.speed[i] + x * wake.speed[i + 1]
+    age = t - (1 - x) * wake.time[i] - x * wake.time[i + 1]
+    return speed / (1 + wake.rate * age) * (1 - math.exp(-h / radius))
+
+
+@njit(error_model="numpy")
+def _forces(f, wake, inviscid, t, h, v, Z_explicit, g, Z, share):
     """Drag, force of the wall, history force (all against the motion), and the slope in v of their sum.
 
     In that slope Z follows v as it does within a stage of length g.
     """
-    Re = max(abs(v) * f.reynolds_per_speed, 1e-12)
+    relative = v - _wake(wake, f.radius, t, h)
+    Re = max(abs(relative) * f.reynolds_per_speed, 1e-12)
     factor, d_factor = _look(f.drag, math.log(Re))
-    drag = f.stokes * factor * v
+    drag = f.stokes * factor * relative
     slope = f.stokes * (factor + d_factor)
     eps = max(h, f.floor) / f.radius
     wall_factor = _look(f.wall, math.log(eps))[0] / eps * f.stokes
     memory, memory_slope = 0.0, 0.0
     if f.history > 0:
-        _share(f, math.log(Re), share)
+        _share(f, math.log(max(abs(v) * f.reynolds_per_speed, 1e-12)), share)
         for j in range(len(Z)):
             left = 1 / (1 + g * f.rates[j])
             Z[j] = (Z_explicit[j] + g * f.rates[j] * v) * left
@@ -153,7 +168,7 @@ def _kept(function):
 
 
 @_kept
-def fly(f, inviscid, t, end, h, v, Z, low, high, dt, growth, tolerance, out, works):
+def fly(f, wake, inviscid, t, end, h, v, Z, low, high, dt, growth, tolerance, out, works):
     """Integrate from (t, h, v, Z) until the gap falls to ``low`` or rises to ``high``, or until ``end``.
 
     ``inviscid``: no viscous force acts (the film of a rebound law), while the memory goes on. Steps begin with
@@ -196,7 +211,9 @@ def fly(f, inviscid, t, end, h, v, Z, low, high, dt, growth, tolerance, out, wor
             for iteration in range(30):
                 gap = h_explicit + g * x
                 M, M_slope = _mass(f, gap)
-                drag, wall, memory, slope = _forces(f, inviscid, gap, x, Z_explicit, g, Z_stage, share)
+                drag, wall, memory, slope = _forces(
+                    f, wake, inviscid, t + _AT[i] * dt, gap, x, Z_explicit, g, Z_stage, share
+                )
                 a = (-0.5 * M_slope * x * x - f.weight - drag - wall - memory) / M
                 residual = x - v_explicit - g * a
                 if iteration == 0:

@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from restitution.bounce.closures import Closures, Release
 from restitution.bounce.forces import GREATEST_RE, expected_reynolds, forces
 from restitution.bounce.kernel import END, FELL, FULL, ROSE, Forces, fly
+from restitution.bounce.tables import look
+from restitution.bounce.wake import NONE, OwnWake, Wake, left_behind
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.stokes import StokesNumber
@@ -184,6 +186,7 @@ class _Run:
         self.inside = self.h < self.edge
         self.scale = conditions.sphere.radius / math.sqrt(conditions.gravity * conditions.sphere.diameter)
         self.dt = 1e-4 * self.scale
+        self.wake, self.steady = NONE, release.developed
         self.impacts: list[Impact] = []
         self.rows: list[NDArray] = []
         self.lost: list[NDArray] = []
@@ -199,7 +202,7 @@ class _Run:
         out, works = np.empty((_ROWS, 3)), np.zeros((_ROWS, 3))
         black_box = self.inside and self.closures.rebound is not None
         n, why, _ = fly(
-            self.forces, black_box, self.t, self.end, self.h, self.v, self.Z, low, high,
+            self.forces, self.wake, black_box, self.t, self.end, self.h, self.v, self.Z, low, high,
             self.dt, 3.0, self.tolerance, out, works,
         )  # fmt: skip
         self.rows.append(out[:n])
@@ -212,7 +215,7 @@ class _Run:
         elif why == FELL and low == self.touch:
             self._impact()
         elif why == FELL:
-            self.inside = True
+            self.inside, self.touch = True, self.closures.contact_gap(self.conditions, -self.v)
         elif why != END:
             what = f"took more than {_ROWS} steps" if why == FULL else "could not solve a step"
             raise IntegrationError(f"the flight {what} near t = {self.t:.6g} s, gap {self.h:.3g} m")
@@ -233,8 +236,21 @@ class _Run:
             self.lost.append(np.array([self.so_far, self.so_far]))
             self.t = self.end
             return
+        if self.closures.wake is not None:
+            self.wake = self._left_behind(self.closures.wake)
         self.v = self._shared(v_out, -v_in, self.touch)
         self.so_far[2] += M / 2 * v_out**2 + tail / 2 * v_in**2 - whole / 2 * self.v**2
+
+    def _left_behind(self, law: OwnWake) -> Wake:
+        """The wake of the approach that has just ended: of the steps since the sphere last began to fall."""
+        t, h, v = np.concatenate(self.rows).T
+        rising = np.flatnonzero(v >= 0)
+        first = rising[-1] + 1 if len(rising) else 0
+        t, h, v = t[first:], h[first:], v[first:]
+        fluid, r = self.conditions.fluid, self.forces.radius
+        drag = self.forces.stokes * look(self.forces.drag, np.abs(v) * self.forces.reynolds_per_speed) * np.abs(v)
+        steady = bool(self.steady and first == 0)
+        return left_behind(law, t, h, v, steady, drag, fluid.viscosity / fluid.density, fluid.density, r)
 
     def _shared(self, v: float, before: float, gap: float) -> float:
         """The velocity after a jump to ``v``, once the fastest history terms, at ``before``, have followed."""
@@ -249,8 +265,6 @@ class _Run:
         return float(law(St, e_dry, self.conditions, out_of_range="ignore")) if v_in > 0 else 0.0
 
     def _mass(self, gap: NDArray | float) -> NDArray:
-        from restitution.bounce.tables import look
-
         C = look(self.forces.added_mass, np.maximum(np.asarray(gap) / self.forces.radius, 1e-12))
         return self.forces.mass + self.forces.tail + C * self.forces.fluid_mass
 

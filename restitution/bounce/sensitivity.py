@@ -28,6 +28,8 @@ def variants(closures: Closures) -> dict[str, Closures]:
     if closures.history is not None:
         found["history"] = replace(closures, history=None)
         found["its decay at finite Re"] = replace(closures, history=Basset1888())
+    if closures.wake is not None:
+        found["its own wake"] = replace(closures, wake=None)
     if closures.added_mass is not None:
         found["added mass"] = replace(closures, added_mass=None)
     if closures.added_mass == "wall":
