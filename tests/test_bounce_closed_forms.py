@@ -148,7 +148,7 @@ def final_velocity(closures, speed, steps, T=0.03):
     f = forces(GONDRET, closures, T)
     Z = np.full(len(f.rates), -speed)
     out, works = np.empty((steps + 2, 3)), np.zeros((steps + 2, 3))
-    n, why, _ = fly(
+    n, why = fly(
         f, NONE, False, 0.0, T, 0.02, -speed, Z, 0.0, math.inf, T / steps * (1 + 1e-12), 1.0, math.inf, out, works
     )
     assert why == END

@@ -64,6 +64,8 @@ class Forces(NamedTuple):
 FELL, ROSE, END, FULL, STUCK = 0, 1, 2, 3, 4
 """Why a stretch ended: gap ``low``, gap ``high``, end time, no room for more steps, an unsolvable step."""
 
+_ITERATIONS = 30
+_SHORTEST = 1e-18
 _GAMMA = 0.25
 _AT = np.array([1 / 4, 3 / 4, 11 / 20, 1 / 2, 1])
 _A = np.array(
@@ -78,7 +80,7 @@ _A = np.array(
 _ERROR = _A[4] - np.array([59 / 48, -17 / 96, 225 / 32, -85 / 12, 0])
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _look(table, ln_x):
     """y and dy/d ln(x) of a table."""
     at = (ln_x - table.start) * table.per_step
@@ -96,7 +98,7 @@ def _look(table, ln_x):
     return y0 + t * (d0 + t * (c2 + t * c3)), (d0 + t * (2 * c2 + t * 3 * c3)) * table.per_step
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _mass(f, h):
     """M(h) and M'(h)."""
     eps = max(h / f.radius, 1e-12)
@@ -104,7 +106,7 @@ def _mass(f, h):
     return f.mass + f.tail + C * f.fluid_mass, slope / eps / f.radius * f.fluid_mass
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _share(f, ln_Re, share):
     """What is left of each history term at ln(Re), the same interpolation as in _look for all at once."""
     at = (ln_Re - f.memory_start) * f.memory_per_step
@@ -120,7 +122,7 @@ def _share(f, ln_Re, share):
         )
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _wake(wake, radius, t, h):
     """Velocity of the fluid that the approach has set moving (restitution.bounce.wake)."""
     at = h * wake.per_gap
@@ -133,7 +135,7 @@ def _wake(wake, radius, t, h):
     return speed / (1 + wake.rate * age) * (1 - math.exp(-h / radius))
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _forces(f, wake, inviscid, t, h, v, Z_explicit, g, Z, share):
     """Drag, force of the wall, history force (all against the motion), and the slope in v of their sum.
 
@@ -159,6 +161,58 @@ def _forces(f, wake, inviscid, t, h, v, Z_explicit, g, Z, share):
     return drag, wall_factor * v, f.history * memory, slope + wall_factor + f.history * memory_slope
 
 
+@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+def _step(f, wake, inviscid, t, dt, h, v, Z, top, scratch):
+    """One step: whether it could be solved, gap and velocity after it, and the errors of both.
+
+    Leaves Z after the step in ``Z_stage`` and the powers of drag, wall and history at the stages in ``power``.
+    """
+    k_h, k_v, k_Z, Z_explicit, Z_stage, power, share = scratch
+    n = len(Z)
+    g = _GAMMA * dt
+    x = v
+    for i in range(5):
+        h_explicit, v_explicit = h, v
+        for j in range(n):
+            Z_explicit[j] = Z[j]
+        for s in range(i):
+            c = dt * _A[i, s]
+            h_explicit += c * k_h[s]
+            v_explicit += c * k_v[s]
+            for j in range(n):
+                Z_explicit[j] += c * k_Z[s, j]
+        # The stage's velocity x by Newton's method with the slope of the viscous forces, then by secants.
+        before, residual_before, slope_of_residual, drag, wall, memory = x, 0.0, 1.0, 0.0, 0.0, 0.0
+        for iteration in range(_ITERATIONS):
+            gap = h_explicit + g * x
+            M, M_slope = _mass(f, gap)
+            drag, wall, memory, slope = _forces(
+                f, wake, inviscid, t + _AT[i] * dt, gap, x, Z_explicit, g, Z_stage, share
+            )
+            residual = x - v_explicit - g * (-0.5 * M_slope * x * x - f.weight - drag - wall - memory) / M
+            if iteration == 0:
+                slope_of_residual = 1 + g * slope / M
+            elif x != before and residual != residual_before:
+                slope_of_residual = (residual - residual_before) / (x - before)
+            before, residual_before = x, residual
+            x -= residual / slope_of_residual
+            if abs(x - before) <= 1e-13 * top or abs(residual) <= 1e-15 * top:
+                break
+        else:
+            return False, h, v, 0.0, 0.0
+        if not math.isfinite(x):
+            return False, h, v, 0.0, 0.0
+        k_h[i], k_v[i] = x, (x - v_explicit) / g
+        for j in range(n):
+            k_Z[i, j] = (Z_stage[j] - Z_explicit[j]) / g
+        power[i, 0], power[i, 1], power[i, 2] = drag * x, wall * x, memory * x
+    error_h, error_v = 0.0, 0.0
+    for i in range(5):
+        error_h += dt * _ERROR[i] * k_h[i]
+        error_v += dt * _ERROR[i] * k_v[i]
+    return True, h_explicit + g * x, x, abs(error_h), abs(error_v)
+
+
 def _kept(function):
     """Compile, and keep the result beside this file or in the user's cache folder, where either can be written."""
     try:
@@ -174,85 +228,37 @@ def fly(f, wake, inviscid, t, end, h, v, Z, low, high, dt, growth, tolerance, ou
     ``inviscid``: no viscous force acts (the film of a rebound law), while the memory goes on. Steps begin with
     ``dt`` and grow by at most ``growth``; ``tolerance`` is the relative error allowed in each. ``out`` takes
     t, h, v of every step, row 0 being the start, ``works`` the work done against drag, wall and history since
-    then. Z is changed in place to its value at the end. Returns the number of rows, why it ended, and dt.
+    then. Z is changed in place to its value at the end. Returns the number of rows and why it ended.
     """
     n = len(Z)
-    k_h, k_v = np.zeros(5), np.zeros(5)
-    k_Z, Z_explicit, Z_stage = np.zeros((5, n)), np.zeros(n), np.zeros(n)
-    power, share = np.zeros((5, 3)), np.zeros(n)
+    power, Z_after = np.zeros((5, 3)), np.zeros(n)
+    scratch = (np.zeros(5), np.zeros(5), np.zeros((5, n)), np.zeros(n), Z_after, power, np.zeros(n))
     top = max(abs(v), 1e-3 * math.sqrt(f.radius * f.weight / f.mass))
     out[0, 0], out[0, 1], out[0, 2] = t, h, v
     rows = 1
-    before, before_miss, after, after_miss = 0.0, 0.0, 0.0, 0.0  # bracket of the crossing within a step
-    target, why, side, searching = low, FELL, 0, False
+    # While the crossing of low or high is sought within a step: the bracket in dt, by how much each end misses.
+    searching, target, why, side = False, low, FELL, 0
+    before, before_miss, after, after_miss = 0.0, 0.0, 0.0, 0.0
     while t < end:
         if rows == len(out):
-            return rows, FULL, dt
-        last = False
-        if not searching and t + dt >= end:
-            dt, last = end - t, True
-        solved = True
-        new_h, new_v = h, v
-        a = 0.0
-        for i in range(5):
-            h_explicit, v_explicit = h, v
-            for j in range(n):
-                Z_explicit[j] = Z[j]
-            for s in range(i):
-                c = dt * _A[i, s]
-                h_explicit += c * k_h[s]
-                v_explicit += c * k_v[s]
-                for j in range(n):
-                    Z_explicit[j] += c * k_Z[s, j]
-            g = _GAMMA * dt
-            x = new_v if i > 0 else v
-            before_x, before_residual = x, 0.0
-            done = False
-            for iteration in range(30):
-                gap = h_explicit + g * x
-                M, M_slope = _mass(f, gap)
-                drag, wall, memory, slope = _forces(
-                    f, wake, inviscid, t + _AT[i] * dt, gap, x, Z_explicit, g, Z_stage, share
-                )
-                a = (-0.5 * M_slope * x * x - f.weight - drag - wall - memory) / M
-                residual = x - v_explicit - g * a
-                if iteration == 0:
-                    derivative = 1 + g * slope / M
-                else:
-                    if x != before_x and residual != before_residual:
-                        derivative = (residual - before_residual) / (x - before_x)
-                before_x, before_residual = x, residual
-                x = x - residual / derivative
-                if abs(x - before_x) <= 1e-13 * top or abs(residual) <= 1e-15 * top:
-                    done = True
-                    break
-            if not (done and math.isfinite(x)):
-                solved = False
-                break
-            new_v = x
-            new_h = h_explicit + g * x
-            k_h[i] = x
-            k_v[i] = (x - v_explicit) / g
-            for j in range(n):
-                k_Z[i, j] = (Z_stage[j] - Z_explicit[j]) / g
-            power[i, 0], power[i, 1], power[i, 2] = drag * x, wall * x, memory * x
+            return rows, FULL
+        last = not searching and t + dt >= end
+        if last:
+            dt = end - t
+        solved, new_h, new_v, error_h, error_v = _step(f, wake, inviscid, t, dt, h, v, Z, top, scratch)
         if not solved:
-            if dt < 1e-18:
-                return rows, STUCK, dt
+            if dt < _SHORTEST:
+                return rows, STUCK
             dt *= 0.25
             searching = False
             continue
-        error_h, error_v = 0.0, 0.0
-        for i in range(5):
-            error_h += _ERROR[i] * k_h[i]
-            error_v += _ERROR[i] * k_v[i]
         scale_h = max(min(max(h, f.floor), 2 * f.radius), 1e-6 * f.radius)
-        error = dt * max(abs(error_h) / scale_h, abs(error_v) / top) / tolerance
+        error = max(error_h / scale_h, error_v / top) / tolerance
         if error > 1 and not searching:
             dt *= max(0.2, 0.9 * error**-0.25)
             continue
         if searching or new_h < low or new_h > high:
-            # The crossing lies within this step: shrink it until it ends there, by the Illinois regula falsi.
+            # Shrink the step until it ends at the crossing, by the Illinois form of the regula falsi.
             if not searching:
                 target, why = (low, FELL) if new_h < low else (high, ROSE)
                 before, before_miss, after, after_miss = 0.0, h - target, dt, new_h - target
@@ -278,11 +284,10 @@ def fly(f, wake, inviscid, t, end, h, v, Z, low, high, dt, growth, tolerance, ou
             works[rows, s] = works[rows - 1, s] + dt * gain
         t = end if last and not searching else t + dt
         h, v = new_h, new_v
-        for j in range(n):
-            Z[j] = Z_stage[j]
+        Z[:] = Z_after
         out[rows, 0], out[rows, 1], out[rows, 2] = t, h, v
         rows += 1
         if searching:
-            return rows, why, dt
+            return rows, why
         dt *= min(growth, max(0.3, 0.9 * (error + 1e-12) ** -0.25))
-    return rows, END, dt
+    return rows, END

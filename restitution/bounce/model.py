@@ -201,7 +201,7 @@ class _Run:
             low, high = self.touch, math.inf
         out, works = np.empty((_ROWS, 3)), np.zeros((_ROWS, 3))
         black_box = self.inside and self.closures.rebound is not None
-        n, why, _ = fly(
+        n, why = fly(
             self.forces, self.wake, black_box, self.t, self.end, self.h, self.v, self.Z, low, high,
             self.dt, 3.0, self.tolerance, out, works,
         )  # fmt: skip
