@@ -59,6 +59,26 @@ def test_resolved_film_loses_what_lubrication_theory_says():
     assert path.impacts[0].v_in / v0 == pytest.approx(1 - math.log(h0 / 1.5e-7) / St, abs=1e-3)
 
 
+def test_history_force_is_the_direct_sum_over_the_trajectory():
+    """After an impact: what the other forces leave of M dv/dt, against the integral of K over all before."""
+    law = laws.get("mei_adrian_1992")
+    closures = Closures(wall=None, added_mass="free", history=law, e_dry=0.8)
+    path = bounce(GONDRET, Release(0.012), closures, end=0.2, tolerance=1e-9)
+    impact, r, nu, rho_f, d = path.impacts[0], 1.5e-3, 0.01 / 935, 935.0, 3e-3
+    now = impact.time_s + 8e-3
+    stokes, volume = 6 * math.pi * 0.01 * r, math.pi * d**3 / 6
+    v = float(path.velocity(now))
+    a = float(path.velocity(now + 1e-5) - path.velocity(now - 1e-5)) / 2e-5
+    drag = laws.get("schiller_naumann_1935")(v * d / nu) * rho_f * v**2 / 2 * math.pi * d**2 / 4
+    left = -((7800 + rho_f / 2) * volume * a + (7800 - rho_f) * volume * 9.81 + drag)
+
+    # Stieltjes sum of K dv, dense towards s = now, where K is singular; one of its intervals holds the impact.
+    x = np.linspace(0, math.sqrt(now), 100_001)
+    dv = -np.diff(path.velocity(now - x**2))
+    kernel = law(((x[1:] + x[:-1]) / 2) ** 2 * nu / r**2, v * d / nu)
+    assert stokes * np.sum(kernel * dv) == pytest.approx(left, rel=1e-3)
+
+
 def test_comes_to_rest_and_stays():
     path = bounce(GONDRET, RELEASE, Closures(rebound=laws.get("eq4_exponential")), end=0.5)
     assert path.impacts[-1].v_out == 0
@@ -208,6 +228,7 @@ def test_every_force_matters_in_its_sense():
         (lambda: bounce(GONDRET, Release(1e-7)), "release.gap"),
         (lambda: bounce(GONDRET, Release(1e-2), end=0.0), "end"),
         (lambda: bounce(changed(diameter=3.0), Release(9.0)), "sphere.diameter"),
+        (lambda: bounce(GONDRET, Release(9.1, 1586.0)), "release.speed"),
         (lambda: bounce(changed(e_dry=None), Release(1e-2)), "sphere.e_dry"),
     ],
 )

@@ -95,13 +95,15 @@ def agreement(trajectory: Trajectory, track: Track, until: float = UNTIL) -> Agr
     touch = 0.0  # time of the first contact by the record's clock, from the record alone where that can be
     if len(frames) > 0:
         near = frames[-1]
-        speed = -np.polyfit(track.time_s[frames], gap[frames], 1)[0] if len(frames) > 1 else first.v_in
+        last = frames[-2:]
+        speed = -np.polyfit(track.time_s[last], gap[last], 1)[0] if len(last) > 1 else first.v_in
         touch = track.time_s[near] + gap[near] / speed
         shift = _shift(trajectory, track.time_s[frames], gap[frames], first.time_s - touch)
     else:
         shift = first.time_s
     after = track.time_s - touch
-    use = (after >= 0) & (after <= until * math.sqrt(d / trajectory.conditions.gravity))
+    use = after <= until * math.sqrt(d / trajectory.conditions.gravity)
+    use[: frames[-1] + 1 if len(frames) else 0] = False
     residual = trajectory.gap(track.time_s[use] + shift) - gap[use]
     return Agreement(after[use], residual, shift, float(np.sqrt(np.mean(residual**2)) / d))
 

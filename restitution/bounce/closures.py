@@ -90,13 +90,14 @@ class Closures:
         """Gap in m at which bodies that enter the film with ``speed`` touch; 0 with a rebound law."""
         if self.rebound is not None:
             return 0.0
-        rough = self._roughness(conditions)
+        rough = self.film_limit(conditions)
         if self.reduced_modulus is None or speed <= 0:
             return rough
         elastic = YangHunt2008()(speed, conditions.fluid.viscosity, self.reduced_modulus, conditions.sphere.radius)
         return max(rough, float(elastic))
 
-    def _roughness(self, conditions: Conditions) -> float:
+    def film_limit(self, conditions: Conditions) -> float:
+        """Gap in m that asperities leave: ``contact``, or the greatest roughness stated, or 1e-4 r."""
         if self.contact is not None:
             return self.contact
         stated = [

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.bounce.closures import Closures, Release
+from restitution.bounce.closures import Closures, Release, terminal_speed
 from restitution.bounce.forces import GREATEST_RE, expected_reynolds, forces
 from restitution.bounce.kernel import END, FELL, FULL, ROSE, Forces, fly
 from restitution.bounce.tables import look
@@ -145,8 +145,7 @@ def bounce(
 ) -> Trajectory:
     """The trajectory of a sphere released over a wall, from time 0 to ``end`` (s).
 
-    The sphere comes to rest where the free flight of a rebound would not rise above the film limit
-    (:meth:`Closures.contact_gap`, or the roughness where a rebound law has the gap of the camera). Raises
+    The sphere comes to rest where the free flight of a rebound would rise by less than the film limit. Raises
     :class:`InputError` for input that cannot be used and :class:`IntegrationError` where the integration fails.
     """
     closures = closures or Closures()
@@ -191,8 +190,7 @@ class _Run:
         self.rows: list[NDArray] = []
         self.lost: list[NDArray] = []
         self.so_far = np.zeros(4)
-        rest = closures if closures.rebound is None else Closures(e_dry=closures.e_dry, contact=closures.contact)
-        self.lowest_apex = rest.contact_gap(conditions)
+        self.lowest_apex = closures.film_limit(conditions)
 
     def stretch(self) -> None:
         """Fly on to the next edge of the film, contact or end."""
@@ -284,8 +282,8 @@ def _check(conditions: Conditions, release: Release, touch: float, end: float) -
     if not (math.isfinite(end) and end > 0):
         raise InputError(Defect("must be a positive number of seconds", field="end", value=f"{end:g}"))
     if Re > GREATEST_RE:
-        d = conditions.sphere.diameter
+        d, fast = conditions.sphere.diameter, abs(release.speed) > terminal_speed(conditions)
         raise InputError(
-            Defect(f"gives Re = {Re:.2g}, far beyond any drag law here: is it in metres, not in millimetres?",
-                   field="sphere.diameter", value=f"{d:g}")
+            Defect(f"gives Re = {Re:.2g}, beyond any drag law here: in millimetres where metres are meant?",
+                   field="release.speed" if fast else "sphere.diameter", value=f"{release.speed if fast else d:g}")
         )  # fmt: skip

@@ -112,7 +112,7 @@ class Kim1998(FiniteReynolds):
 
 @dataclass(frozen=True)
 class DorganLoth2007(FiniteReynolds):
-    """c_1 = 2.5, f_H = 0.75 + 0.2 Re: refit to simulations at Re up to about 300."""
+    """c_1 = 2.5, f_H = 0.75 + 0.2 Re; said to hold for Re up to a few hundred (not checked in the paper)."""
 
     name: ClassVar = "dorgan_loth_2007"
     title: ClassVar = "Dorgan & Loth 2007, finite Reynolds number"
