@@ -22,6 +22,7 @@ from restitution.bounce import Closures, OwnWake, Release, bounce
 from restitution.bounce.agreement import Agreement, agreement, release_of
 from restitution.bounce.sensitivity import forces_off
 from restitution.conditions import Conditions
+from restitution.impact_speed import H_FILM
 from restitution.tracks import Track
 
 GONDRET = ("gondret2002_st152", "gondret2002_st27")
@@ -101,11 +102,12 @@ def fitted(everything: list[Record]) -> Table:
     made = table("fitted (K of Eq. (4) or f_1 of the kernel; A = 2 is not fitted)", "closures", everything)
     first, drops = everything[:1], everything[2:]
 
-    def eq4(name: str, kernel: str, wake: OwnWake | None = None) -> Callable[..., Closures]:
+    def eq4(name: str, kernel: str, wake: OwnWake | None = None, film: float = H_FILM) -> Callable[..., Closures]:
         return lambda K, f_1=None: Closures(
             rebound=laws.get(name, K=float(np.clip(K, 0, 200))),
             history=laws.get(kernel, **({} if f_1 is None else {"f_1": float(np.clip(f_1, 1e-3, 100))})),
             wake=wake,
+            film=film,
         )
 
     for name in ("eq4_exponential", "eq4_rational"):
@@ -117,6 +119,10 @@ def fitted(everything: list[Record]) -> Table:
                 K = fit(chosen, eq4(name, kernel, OwnWake()), [12.0])
                 line = f"the same with wake, {who}: K {K[0]:.1f}"
                 made.add_row(line, *cells(everything, eq4(name, kernel, OwnWake())(*K)))
+        for film in (0.05, 0.2, 0.3):
+            closures = eq4(name, HISTORY[0], OwnWake(), film)
+            K = fit(first, closures, [12.0])
+            made.add_row(f"{name}, wake, film {film} d, St 152: K {K[0]:.1f}", *cells(everything, closures(*K)))
         x = fit(first, eq4(name, "mei_adrian_1992"), [12.0, 0.2])
         line = f"{name}, mei_adrian_1992, St 152: K {x[0]:.1f}, f_1 {x[1]:.2f}"
         made.add_row(line, *cells(everything, eq4(name, "mei_adrian_1992")(*x)))

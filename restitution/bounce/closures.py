@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
+from functools import lru_cache
 from typing import Literal
 
 from restitution.bounce.wake import OwnWake
@@ -41,7 +42,7 @@ class Closures:
     added_mass: Literal["wall", "free"] | None = "wall"
     """``wall``: exact C_M(h) of potential flow; ``free``: 1/2 at any gap."""
     history: HistoryLaw | None = field(default_factory=DorganLoth2007)
-    """The default is the kernel made for the Re of measured rebounds, up to a few hundred."""
+    """The default is the kernel said to hold at the Re of measured rebounds, up to a few hundred."""
     wake: OwnWake | None = None
     """The fluid that an approach leaves moving, met by the rebound; not of the literature, so off by default."""
     rebound: ReboundLaw | None = None
@@ -55,7 +56,8 @@ class Closures:
     """E* of the two bodies in Pa: the contact gap is then at least the elastohydrodynamic one (Yang & Hunt 2008)
     at the speed with which the sphere enters the film."""
     film: float = H_FILM
-    """Edge of the film in diameters."""
+    """Edge of the film in diameters. A law's constants belong to it: the wider the film, the more of the loss is
+    in e_eff. The same frames want K of Eq. (4) to be 8.4, 10.9 and 14.5 at 0.05, 0.1 and 0.2 d."""
 
     def __post_init__(self) -> None:
         if self.lubrication is None:
@@ -152,6 +154,7 @@ def excess_weight(conditions: Conditions) -> float:
     return (conditions.sphere.density - conditions.fluid.density) * volume * conditions.gravity
 
 
+@lru_cache(maxsize=256)
 def terminal_speed(conditions: Conditions, drag: DragLaw | None = None) -> float:
     """The steady speed in m/s far from walls at which ``drag`` balances gravity less buoyancy."""
     c = conditions
