@@ -41,9 +41,11 @@ def release_of(track: Track, conditions: Conditions, closures: Closures | None =
 
     With a recorded approach: its first frame, and the mean speed of its frames outside the film. Of a record that
     begins on a rebound: five diameters above the wall, at the speed from which the model reaches the far impact
-    speed that the conditions quote. Raises :class:`InputError` where there is neither. (For the St 27 record that is
-    0.66 m/s, above the terminal 0.52: its quoted 0.518 m/s may well mean the speed further up. Released at the
-    terminal speed the model meets the wall with 0.469 m/s, and its first apex comes out a fifth lower.)
+    speed that the conditions quote. Raises :class:`InputError` where there is neither.
+
+    For the St 27 record that is 0.66 m/s, above the terminal 0.52: its quoted 0.518 m/s may well mean the speed
+    further up. Released at the terminal speed the model meets the wall with 0.469 m/s, and its first apex comes
+    out a fifth lower.
     """
     found = contacts(track)
     frames = _approach(track, found)
