@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from lbm import InputError, Rates, Simulation
-from lbm.bodies import FixedBody
+from lbm import FixedBody, InputError, Rates, Simulation
 from lbm.stencil import Q
 
 RATES = Rates.two_relaxation_times(0.1)
@@ -22,7 +21,7 @@ def test_a_half_way_slab_is_the_wall_of_a_face(axis, steps):
     ends, inside = [slice(None)] * 3, [slice(None)] * 3
     ends[axis], inside[axis] = [0, n + 1], slice(1, n + 1)
     solid[tuple(ends)] = True
-    slab.passes.append(FixedBody(solid))
+    slab.add(FixedBody(solid))
     faces.run(steps)
     slab.run(steps)
     assert np.abs(slab.velocity[direction][tuple(inside)] - faces.velocity[direction]).max() < 1e-15
@@ -33,7 +32,7 @@ def test_moving_surface_drags_the_fluid():
     solid = np.zeros((4, 4, n + 2), dtype=bool)
     solid[:, :, [0, -1]] = True
     flow = Simulation((4, 4, n + 2), RATES)
-    flow.passes.append(FixedBody(solid, velocity=(0.02, -0.01, 0.0)))
+    flow.add(FixedBody(solid, velocity=(0.02, -0.01, 0.0)))
     flow.run(3001)
     assert flow.velocity[0, :, :, 1:-1] == pytest.approx(np.full((4, 4, n), 0.02), rel=1e-9)
     assert flow.velocity[1, :, :, 1:-1] == pytest.approx(np.full((4, 4, n), -0.01), rel=1e-9)
@@ -44,13 +43,12 @@ def test_fractions_outside_the_link_are_refused(q):
     solid = np.zeros((8, 8, 8), dtype=bool)
     solid[3:5, 3:5, 3:5] = True
     with pytest.raises(InputError, match="fraction"):
-        FixedBody(solid, np.full((Q, 8, 8, 8), q))
+        Simulation((8, 8, 8), RATES).add(FixedBody(solid, np.full((Q, 8, 8, 8), q)))
 
 
 def test_body_of_another_grid_is_refused():
     solid = np.zeros((8, 8, 8), dtype=bool)
     solid[3:5, 3:5, 3:5] = True
     flow = Simulation((8, 8, 9), RATES)
-    flow.passes.append(FixedBody(solid))
     with pytest.raises(InputError, match="grid"):
-        flow.run(1)
+        flow.add(FixedBody(solid))

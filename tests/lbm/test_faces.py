@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from lbm import FreeSlip, Inlet, InputError, NoSlip, Outlet, OutsideRangeWarning, Rates, Simulation
-from lbm.bodies import FixedBody
+from lbm import FixedBody, FreeSlip, Inlet, InputError, NoSlip, Outlet, OutsideRangeWarning, Rates, Simulation
 
 RATES = Rates.two_relaxation_times(0.1)
 FACES = {"x": 0, "y": 1, "z": 2}
@@ -89,7 +88,7 @@ def test_walls_and_inlets_have_their_velocity_at_any_density(rest):
     solid = np.zeros((4, 4, 8), dtype=bool)
     solid[:, :, [0, -1]] = True
     dragged = Simulation((4, 4, 8), RATES)
-    dragged.passes.append(FixedBody(solid, velocity=(0.02, -0.01, 0.0)))
+    dragged.add(FixedBody(solid, velocity=(0.02, -0.01, 0.0)))
     dragged.set_flow(rest)
     dragged.run(2001)
     assert dragged.velocity[0, :, :, 1:-1] == pytest.approx(np.full((4, 4, 6), 0.02), rel=1e-9)
