@@ -15,7 +15,7 @@ from lbm.arguments import shown
 from lbm.errors import InputError
 from lbm.lattice import Lattice
 
-__all__ = ["Body", "check", "description", "set_state", "state"]
+__all__ = ["Body", "attach", "description", "set_state", "state"]
 
 
 class Body(Protocol):
@@ -45,14 +45,16 @@ class Body(Protocol):
         """Continue from what :meth:`state` gave."""
 
 
-def check(body: Body) -> None:
-    """:class:`InputError` for what does not keep to the protocol."""
+def attach(body: Body, lattice: Lattice, step: int) -> None:
+    """Prepare ``body`` for ``lattice``; :class:`InputError` for what does not keep to the protocol."""
     if isinstance(body, type):
         raise InputError(f"{shown(body)}: a class; give a body, {body.__name__}(...)")
     if not callable(body) or not callable(getattr(body, "describe", None)):
         raise InputError(f"{shown(body)}: no body; give a callable object with describe(), see lbm.bodies.Body")
     if hasattr(body, "state") != hasattr(body, "set_state"):
         raise InputError(f"{type(body).__name__}: state and set_state come together")
+    if hasattr(body, "prepare"):
+        body.prepare(lattice, step)
     description(body)
     state(body)
 

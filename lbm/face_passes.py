@@ -2,9 +2,11 @@
 
 In the map of :mod:`lbm.lattice` all three are walls at rest. Then
 
-* velocity u at the wall (Ladd, J. Fluid Mech. 271 (1994) 285): ``f_k += 6 w_k rho c_k . u`` with the density
-  rho of the adjacent cell and u where the link crosses the face, for a diagonal link half-way between two
-  cells: second order also where u varies along the face;
+* velocity u at the wall (Ladd, J. Fluid Mech. 271 (1994) 285): ``f_k += 6 w_k c_k . (rho u + <rho> (u_k - u))``
+  with rho and u at the adjacent cell, u_k where the link crosses the face, for a diagonal link half-way between
+  two cells, and <rho> the mean over the face. Second order also where u varies along the face; the first part
+  conserves mass cell by cell, the second over the face, as between two cells one link brings what the other
+  takes;
 * density rho_w (non-equilibrium extrapolation, Guo, Zheng & Shi, Chinese Phys. 11 (2002) 366):
   ``f_k = f_k^eq((2 rho_w + rho)/3, u) + f_k - f_k^eq(rho, u)`` with everything on the right that of the next
   cell inside: density linear through rho_w on the face, velocity and viscous stress carried outwards.
@@ -24,8 +26,8 @@ from numba import njit, prange
 from lbm import arguments
 from lbm.cache import kernel
 from lbm.errors import InputError, OutsideRangeWarning
-from lbm.faces import FACES, Face, Inlet, NoSlip, Outlet
-from lbm.lattice import BOUNCE, PERIODIC, SLIP, Lattice, incoming, outgoing
+from lbm.faces import FACES, Face, FreeSlip, Inlet, NoSlip, Outlet, Periodic
+from lbm.lattice import BOUNCE, Lattice, incoming, outgoing
 from lbm.stencil import C, Q, W
 
 _RANK = {NoSlip: 2, Inlet: 1, Outlet: 0}
@@ -50,7 +52,7 @@ def passes(faces: tuple[Face, ...], grid) -> list[WallPass | OutletPass]:
         if isinstance(face, Outlet):
             found.append(OutletPass(face, side, outlets))
         else:
-            wall = WallPass(face, side, tuple(other.kind for other in faces), grid)
+            wall = WallPass(face, side, faces, grid)
             if wall.moves:
                 found.append(wall)
     _warn_of_filling(faces, found)
@@ -75,15 +77,19 @@ def _warn_of_filling(faces: tuple[Face, ...], found: list) -> None:
 class WallPass:
     """Adds the momentum of a moving wall or an inlet."""
 
-    def __init__(self, face: NoSlip | Inlet, side: tuple, kinds: tuple[int, ...], grid):
+    def __init__(self, face: NoSlip | Inlet, side: tuple, faces: tuple[Face, ...], grid):
         self._side = side
         self._given = face.velocity
         self._name = f"face {FACES[2 * side[0] + side[1]]}: velocity"
         along = [axis for axis in range(3) if axis != side[0]]
-        self._along = [(axis, kinds[2 * axis : 2 * axis + 2]) for axis in along]
+        pairs = [faces[2 * axis : 2 * axis + 2] for axis in along]
+        self._joined = [isinstance(pair[0], Periodic) for pair in pairs]
+        walled = NoSlip | FreeSlip
+        self._closed = [all(isinstance(other, walled) for other in (face, *pair)) for pair in pairs]
         self._shape = (*(grid.shape[axis] for axis in along), 3)
         self._padded = np.zeros((self._shape[0] + 2, self._shape[1] + 2, 3))
         self._velocity = self._padded[1:-1, 1:-1]
+        self._density = np.empty(self._shape[:2])
         self.is_inlet = isinstance(face, Inlet)
         self.varies = callable(self._given)
         self.area = self._shape[0] * self._shape[1]
@@ -104,8 +110,8 @@ class WallPass:
             )
         arguments.speed(self._name, velocity, -1)
         self._velocity[...] = velocity
-        for way, (axis, kinds) in enumerate(self._along):
-            _extend(np.moveaxis(self._padded, way, 0), axis, *kinds)
+        for way in range(2):
+            _extend(np.moveaxis(self._padded, way, 0), self._joined[way], self._closed[way])
 
     def inflow(self) -> float:
         """Volume that comes in per step."""
@@ -122,23 +128,28 @@ class WallPass:
 
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Push what comes back."""
-        _push(lattice.populations, lattice.grid, lattice.parity, *self._side, self._padded)
+        axis, high, _ = self._side
+        _sent_density(lattice.populations, lattice.grid, lattice.parity, axis, high, self._density)
+        mean = self._density.mean()
+        _push(
+            lattice.populations, lattice.grid, lattice.parity, *self._side, self._padded, self._density, mean
+        )  # fmt: skip
 
 
-def _extend(velocity: np.ndarray, axis: int, low: int, high: int) -> None:
-    """Fill the first and last layer of ``velocity``, beyond the edges along ``axis`` with faces ``low``, ``high``.
+def _extend(velocity: np.ndarray, joined: bool, closed: bool) -> None:
+    """Fill the first and last layer of ``velocity``, beyond two opposite edges of the face.
 
-    The mean with the layer next to it is then the velocity at the edge: by periodicity, by symmetry, or
-    extrapolated linearly.
+    The mean with the layer next to it is then the velocity at the edge: that between the two cells where the
+    edges are ``joined``, else extrapolated linearly. Between two ``closed`` edges a wall must take out at one
+    what it brings in at the other: both get the mean.
     """
-    for kind, beyond, first, second, opposite in ((low, 0, 1, 2, -2), (high, -1, -2, -3, 1)):
-        if kind == PERIODIC:
-            velocity[beyond] = velocity[opposite]
-        elif kind == SLIP:
-            velocity[beyond] = velocity[first]
-            velocity[beyond, :, axis] *= -1
-        else:
-            velocity[beyond] = 2 * velocity[first] - velocity[second]
+    if joined:
+        velocity[0], velocity[-1] = velocity[-2], velocity[1]
+        return
+    low, high = 1.5 * velocity[1] - 0.5 * velocity[2], 1.5 * velocity[-2] - 0.5 * velocity[-3]
+    if closed:
+        low = high = (low + high) / 2
+    velocity[0], velocity[-1] = 2 * low - velocity[1], 2 * high - velocity[-2]
 
 
 class OutletPass:
@@ -191,22 +202,31 @@ def _returns(grid, k, axis, high, beaten_by, x, y, z):
 
 
 @kernel
-def _push(populations, grid, parity, axis, high, beaten_by, velocity):
-    # ``velocity`` reaches one cell beyond the face on every side
-    ahead = 1 if axis == 0 else 0
-    sideways = 1 if axis == 2 else 2
-    for line in prange(velocity.shape[0] - 2):
-        for n in range(velocity.shape[1] - 2):
+def _sent_density(populations, grid, parity, axis, high, density):
+    for line in prange(density.shape[0]):
+        for n in range(density.shape[1]):
             x, y, z = _cell(grid, axis, high, np.int64(line), n)
             rho = 1.0
             for k in range(Q):
                 rho += populations[outgoing(grid, parity, k, x, y, z)]
-            here = velocity[line + 1, n + 1]
+            density[line, n] = rho
+
+
+@kernel
+def _push(populations, grid, parity, axis, high, beaten_by, velocity, density, mean):
+    # ``velocity`` reaches one cell beyond the face on every side
+    ahead = 1 if axis == 0 else 0
+    sideways = 1 if axis == 2 else 2
+    for line in prange(density.shape[0]):
+        for n in range(density.shape[1]):
+            x, y, z = _cell(grid, axis, high, np.int64(line), n)
+            u, rho = velocity[line + 1, n + 1], density[line, n]
             for k in range(1, Q):
                 if _returns(grid, k, axis, high, beaten_by, x, y, z):
-                    there = velocity[line + 1 - C[k, ahead], n + 1 - C[k, sideways]]
-                    u = 0.5 * (here[0] + there[0]), 0.5 * (here[1] + there[1]), 0.5 * (here[2] + there[2])
-                    add = 6 * W[k] * rho * (C[k, 0] * u[0] + C[k, 1] * u[1] + C[k, 2] * u[2])
+                    beside = velocity[line + 1 - C[k, ahead], n + 1 - C[k, sideways]]
+                    cu = C[k, 0] * u[0] + C[k, 1] * u[1] + C[k, 2] * u[2]
+                    cu_beside = C[k, 0] * beside[0] + C[k, 1] * beside[1] + C[k, 2] * beside[2]
+                    add = 6 * W[k] * (rho * cu + mean * 0.5 * (cu_beside - cu))
                     populations[incoming(grid, parity, k, x, y, z)] += add
 
 

@@ -45,9 +45,7 @@ class NoSlip:
     Time and velocity are in lattice units; the function is called half-way between two steps, before the
     second, and a function that fails then leaves the first one's flow. n and m run along the other two axes in
     the order x, y, z; the array holds the velocity above the centres of the cells.
-
-    A wall that is stretched (velocity varying along itself) and along which the density varies does not
-    conserve mass exactly; one that moves as a whole does.
+    Walls conserve mass in a closed box, also where the velocity varies along them.
     """
 
     velocity: Velocity = (0.0, 0.0, 0.0)
@@ -61,8 +59,8 @@ class Inlet:
     Sound is reflected fully, here and at an outlet: start the fluid with the velocity it is to have.
 
     Beside a no-slip wall the links through the common edge have the wall's velocity. A profile that vanishes
-    there is second order (a parabola brings its exact flux); of a uniform one, which jumps at the wall, n
-    cells between two still walls let the part 1 - 1/(3n) through.
+    there is second order (of a parabola on n cells about the part 1 - 1/(2n^2) flows in); of a uniform one,
+    which jumps at the walls, n cells between two still walls let the part 1 - 1/(3n) through.
     """
 
     velocity: Velocity

@@ -134,9 +134,7 @@ class Simulation:
         self._refuse_within_run("add")
         if any(body is other for other in self._bodies):
             raise InputError(f"{arguments.shown(body)}: is in this simulation already")
-        if hasattr(body, "prepare"):
-            body.prepare(self.lattice, self.steps)
-        bodies.check(body)
+        bodies.attach(body, self.lattice, self.steps)
         self._bodies.append(body)
 
     def set_flow(self, density=1.0, velocity=(0.0, 0.0, 0.0)) -> None:
