@@ -143,7 +143,7 @@ def precision(value) -> np.dtype:
         found = np.dtype(value)
     except TypeError:
         found = None
-    if value is None or found not in (np.dtype(np.float64), np.dtype(np.float32)):
+    if value is None or found is None or found not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise InputError(f"dtype = {shown(value)}: use float64 or float32")
     return found
 
@@ -168,3 +168,11 @@ def path(name: str, value) -> Path:
         return Path(value)
     except TypeError:
         raise InputError(f"{name} = {shown(value)}: give a path") from None
+
+
+def force(given, when: float) -> tuple[float, float, float] | None:
+    """Force density at the time ``when``: 3 components, or a function of time that gives them."""
+    if given is None:
+        return None
+    name = f"force at time {when:g}" if callable(given) else "force"
+    return tuple(float(v) for v in vector(name, given(when) if callable(given) else given))

@@ -114,11 +114,7 @@ class Simulation:
         return self._force_at(float(self.steps))
 
     def _force_at(self, when: float) -> tuple[float, float, float] | None:
-        if self.given_force is None:
-            return None
-        force = self.given_force(when) if callable(self.given_force) else self.given_force
-        at = f" at time {when:g}" if callable(self.given_force) else ""
-        return tuple(float(v) for v in arguments.vector("force" + at, force))
+        return arguments.force(self.given_force, when)
 
     @property
     def bodies(self) -> tuple[Body, ...]:
@@ -265,10 +261,7 @@ class Simulation:
 
     def _refuse_half_done(self) -> None:
         if self._half_done:
-            raise InputError(
-                f"the simulation was stopped amid a change of its populations, after step {self.steps}; "
-                "set_flow or restore it first"
-            )
+            raise InputError(f"stopped amid a change after step {self.steps}; set_flow or restore it first")
 
     def _typed(self, force):
         return None if force is None else tuple(self.dtype.type(v) for v in force)
@@ -283,8 +276,7 @@ class Simulation:
         typed = self._typed(force)
         planes = self.shape[2]
         blocks = max(1, min(self.threads, planes // arguments.SMALLEST))
-        row_bytes = 3 * Q * lattice.grid.row * lattice.dtype.itemsize
-        tile = max(8, _TILE_BYTES // row_bytes)
+        tile = max(8, _TILE_BYTES // (3 * Q * lattice.grid.row * lattice.dtype.itemsize))
         grid, rows, rates = lattice.grid, lattice.rows, self._scaled_rates
         with interrupts_deferred() as held:
             while self.steps < until and not held:
