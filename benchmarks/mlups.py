@@ -29,7 +29,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.peers import lbmpy_steps
-from lbm import Rates, Simulation
+from lbm import Body, Rates, Simulation
 from lbm.stencil import Q
 
 
@@ -39,12 +39,22 @@ def _scale_in_place(a, factor):
         a[i] *= factor
 
 
+class _Nothing(Body):
+    """A body that leaves the fluid alone."""
+
+    def __call__(self, lattice, step, force):
+        pass
+
+    def describe(self):
+        return {}
+
+
 class _SingleSteps(Simulation):
     """Makes one step a sweep, as a simulation with bodies or moving walls does."""
 
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
-        self.passes.append(lambda lattice, step, force: None)
+        self.add(_Nothing())
 
 
 def _contestants(n: int, dtype, threads: int) -> dict[str, Callable[[], None]]:

@@ -12,13 +12,15 @@ Everything is in lattice units (cell, time step, rest density 1); :mod:`lbm.scal
 The package knows nothing of :mod:`restitution`.
 """
 
+from lbm.bodies import Body
 from lbm.errors import DivergenceError, InputError, OutputError, OutsideRangeWarning
 from lbm.faces import FreeSlip, Inlet, NoSlip, Outlet, Periodic
+from lbm.fixed_body import FixedBody
 from lbm.rates import Rates
 from lbm.scales import FlowScales, Scales
 from lbm.simulation import Simulation
 
 __all__ = [
-    "DivergenceError", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip", "Outlet", "OutputError",
-    "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
+    "Body", "DivergenceError", "FixedBody", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip", "Outlet",
+    "OutputError", "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
 ]  # fmt: skip

@@ -1,88 +1,84 @@
-"""Solid bodies inside the box: a sparse list of links that cross their surface, corrected after every step.
+"""What may be put into the fluid: the protocol of :meth:`lbm.Simulation.add`.
 
-Linear interpolation (Bouzidi, Firdaouss & Lallemand, Phys. Fluids 13 (2001) 3452), second order for curved
-and inclined surfaces. With q the fraction of the link from the fluid cell x along c_k to the surface, k' the
-opposite of k, u_w the velocity of the surface, rho the density at x, f* populations as sent by the last step::
-
-    f_k'(x) = 2q f*_k(x) + (1 - 2q) f*_k(x - c_k) + 6 w_k rho c_k'.u_w        q < 1/2
-    f_k'(x) = (f*_k(x) + (2q - 1) f*_k'(x) + 6 w_k rho c_k'.u_w) / (2q)       q >= 1/2
-
-The bulk kernel runs over the solid cells as well; what it computes there never reaches the fluid.
+A body changes the populations near its surface after every step. It finds them by
+:func:`lbm.lattice.incoming` and :func:`lbm.lattice.outgoing`.
 """
 
 from __future__ import annotations
 
+import json
+from typing import Protocol
+
 import numpy as np
-from numba import prange
 
-from lbm.cache import kernel
+from lbm.arguments import shown
 from lbm.errors import InputError
-from lbm.lattice import Lattice, incoming, outgoing
-from lbm.stencil import OPPOSITE, C, Q, W
+from lbm.lattice import Lattice
+
+__all__ = ["Body", "attach", "description", "set_state", "state"]
 
 
-class FixedBody:
-    """A body at rest or with a given velocity of its surface; append it to ``Simulation.passes``.
+class Body(Protocol):
+    """Called after every step; says what a restart must find again.
 
-    Parameters: ``solid`` boolean (nx, ny, nz), true where a cell centre lies inside; ``fraction`` of shape
-    (19, nx, ny, nz), the fraction q in (0, 1] of each link that starts in a fluid cell and ends in a solid
-    one (other values are not looked at), or None for half-way; ``velocity`` of the surface, 3 components.
-    Links are followed through the faces of the box as through periodic ones: keep a body two cells away from
-    other faces.
+    A class may leave out ``prepare``, and ``state`` with ``set_state`` if nothing of it changes in time. One
+    derived from this class gets them as they stand here.
     """
 
-    def __init__(self, solid: np.ndarray, fraction: np.ndarray | None = None, velocity=(0.0, 0.0, 0.0)):
-        solid = np.asarray(solid, dtype=bool)
-        if solid.ndim != 3 or solid.all():
-            raise InputError(
-                f"solid: shape {solid.shape} with {solid.sum()} solid cells; give 3 axes and some fluid"
-            )
-        cells, directions, q = [], [], []
-        for k in range(1, Q):
-            ends_inside = ~solid & np.roll(solid, -C[k], axis=(0, 1, 2))
-            found = np.argwhere(ends_inside)
-            cells.append(found)
-            directions.append(np.full(len(found), k))
-            if fraction is None:
-                q.append(np.full(len(found), 0.5))
-                continue
-            along = np.asarray(fraction, dtype=float)[k][ends_inside]
-            if not ((along > 0) & (along <= 1)).all():
-                raise InputError(f"fraction: outside (0, 1] on a link along {tuple(C[k])}")
-            # Without a fluid cell behind to interpolate from, the surface is taken half-way.
-            behind_is_solid = np.roll(solid, C[k], axis=(0, 1, 2))[ends_inside]
-            q.append(np.where((along < 0.5) & behind_is_solid, 0.5, along))
-        self.shape = solid.shape
-        self.links = np.column_stack([np.concatenate(cells), np.concatenate(directions)]).astype(np.int64)
-        self.fraction = np.concatenate(q)
-        u = np.asarray(velocity, dtype=float)
-        if u.shape != (3,) or not np.isfinite(u).all():
-            raise InputError(f"body: velocity {velocity!r}; give 3 finite components")
-        self.push = -6 * W[self.links[:, 3]] * (C[self.links[:, 3]] @ u)
+    def __call__(self, lattice: Lattice, step: int, force: tuple[float, float, float] | None) -> None:
+        """Change populations of ``lattice`` after step number ``step`` (from 0), made with ``force``.
 
-    def __call__(self, lattice: Lattice, step: int, force) -> None:
-        """Correct the populations that come back from the surface."""
-        if lattice.grid.shape != self.shape:
-            raise InputError(f"body on a grid of {self.shape} in a simulation of {lattice.grid.shape} cells")
-        _bounce(lattice.populations, lattice.grid, lattice.parity, self.links, self.fraction, self.push)
+        An error raised here leaves a half-done step; what can fail belongs into :meth:`prepare`.
+        """
+
+    def describe(self) -> dict:
+        """What must agree at a restart, in JSON's terms: numbers, strings, lists and dictionaries."""
+
+    def prepare(self, lattice: Lattice, step: int) -> None:
+        """Called when the body is added and before every step, when an error leaves the flow as it was."""
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What changes in time, as arrays of numbers; a checkpoint keeps them bit for bit."""
+        return {}
+
+    def set_state(self, state: dict[str, np.ndarray]) -> None:
+        """Continue from what :meth:`state` gave."""
 
 
-@kernel
-def _bounce(populations, grid, parity, links, fraction, push):
-    for link in prange(links.shape[0]):
-        x, y, z, k = links[link]
-        back = OPPOSITE[k]
-        q = fraction[link]
-        sent = populations[outgoing(grid, parity, k, x, y, z)]
-        add = push[link]
-        if add != 0:
-            rho = 1.0
-            for i in range(Q):
-                rho += populations[outgoing(grid, parity, i, x, y, z)]
-            add *= rho
-        if q < 0.5:
-            value = 2 * q * sent + (1 - 2 * q) * populations[incoming(grid, parity, k, x, y, z)] + add
-        else:
-            sent_back = populations[outgoing(grid, parity, back, x, y, z)]
-            value = (sent + (2 * q - 1) * sent_back + add) / (2 * q)
-        populations[incoming(grid, parity, back, x, y, z)] = value
+def attach(body: Body, lattice: Lattice, step: int) -> None:
+    """Prepare ``body`` for ``lattice``; :class:`InputError` for what does not keep to the protocol."""
+    if isinstance(body, type):
+        raise InputError(f"{shown(body)}: a class; give a body, {body.__name__}(...)")
+    if not callable(body) or not callable(getattr(body, "describe", None)):
+        raise InputError(f"{shown(body)}: no body; give a callable object with describe(), see lbm.bodies.Body")
+    if hasattr(body, "state") != hasattr(body, "set_state"):
+        raise InputError(f"{type(body).__name__}: state and set_state come together")
+    if hasattr(body, "prepare"):
+        body.prepare(lattice, step)
+    description(body)
+    state(body)
+
+
+def description(body: Body) -> dict:
+    """``describe()`` and the kind of the body, as JSON gives them back."""
+    found = body.describe()
+    try:
+        return {"kind": type(body).__name__, **json.loads(json.dumps(found))}
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{type(body).__name__}.describe(): not in JSON's terms ({error})") from None
+
+
+def state(body: Body) -> dict[str, np.ndarray]:
+    """``state()`` as arrays; empty for a body that has none."""
+    found = body.state() if hasattr(body, "state") else {}
+    arrays = {name: np.asarray(value) for name, value in found.items()}
+    for name, value in arrays.items():
+        if value.dtype.kind not in "biufc" or not name or "/" in name:
+            raise InputError(f"{type(body).__name__}.state(): {name!r} is no array of numbers with a plain name")
+    return arrays
+
+
+def set_state(body: Body, saved: dict[str, np.ndarray]) -> None:
+    """Hand ``saved`` to the body, if it has a state."""
+    if hasattr(body, "set_state"):
+        body.set_state(saved)

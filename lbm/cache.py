@@ -19,6 +19,12 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLoca
 
 _PACKAGE = Path(__file__).parent
 _kernels: list = []
+_trouble: set[str] = set()
+# Reading a damaged pickle can end in any of these.
+_UNREADABLE = (
+    OSError, EOFError, pickle.UnpicklingError, ValueError, TypeError, KeyError, IndexError, AttributeError,
+    ImportError, MemoryError, OverflowError,
+)  # fmt: skip
 
 
 @functools.cache
@@ -63,31 +69,47 @@ class _Implementation(CompileResultCacheImpl):
 
 
 class _Cache(FunctionCache):
-    """Without a cache that can be used, kernels are compiled anew and kept in memory only; that is said once."""
+    """Without a cache that can be used, kernels are compiled anew and kept in memory only; that is said once.
+
+    A damaged index or kernel is thrown away, so that this run writes it anew.
+    """
 
     _impl_class = _Implementation
 
     def load_overload(self, sig, target_context):
         try:
             return super().load_overload(sig, target_context)
-        except (OSError, EOFError, pickle.UnpicklingError, ValueError) as error:
-            _warn(f"cannot be read ({error or type(error).__name__}); delete it to mend that")
-            return None
+        except PermissionError as error:
+            _warn("unreadable", f"cannot be read ({error}); set LBM_CACHE_DIR to a folder that can")
+        except NotADirectoryError:
+            pass  # said when it is to be written
+        except _UNREADABLE:
+            try:
+                self._cache_file.flush()
+                _warn("damaged", "holds a damaged index or kernel, which is replaced now")
+            except OSError as error:
+                _warn("unwritable", f"is damaged and cannot be written ({error}); delete it to mend that")
+        return None
 
     def save_overload(self, sig, data):
         try:
             super().save_overload(sig, data)
-        except (OSError, EOFError, pickle.UnpicklingError, ValueError) as error:
-            _warn(f"cannot be written ({error or type(error).__name__}); set LBM_CACHE_DIR to a folder that can")
+        except OSError as error:
+            _warn(
+                "unwritable",
+                f"cannot be written ({error or type(error).__name__}); set LBM_CACHE_DIR to a folder that can",
+            )
 
 
 class CacheWarning(UserWarning):
     """Compiled kernels are not kept on disk, or those there are of no use: every process compiles them again."""
 
 
-@functools.cache
-def _warn(what: str) -> None:
-    warnings.warn(f"kernel cache {directory()} {what}; kernels are compiled anew", CacheWarning, stacklevel=2)
+def _warn(kind: str, what: str) -> None:
+    if kind not in _trouble:
+        _trouble.add(kind)
+        text = f"kernel cache {directory()} {what}; kernels are compiled anew"
+        warnings.warn(text, CacheWarning, stacklevel=2)
 
 
 def kernel(function=None, *, parallel=True):
@@ -112,3 +134,8 @@ def compiled_count() -> int:
 def is_empty() -> bool:
     """Whether this version of the package has not compiled its sweeps on this machine yet."""
     return not any(directory().glob("kernels.sweep*.nbc"))
+
+
+def keeps() -> bool:
+    """Whether later processes will find what this one has compiled, as far as is known."""
+    return not _trouble & {"unreadable", "unwritable"}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+__all__ = ["DivergenceError", "InputError", "OutputError", "OutsideRangeWarning"]
+
 
 class InputError(ValueError):
     """The input cannot be used; the message names what is wrong and what to do."""

@@ -10,6 +10,8 @@ from lbm.lattice import Lattice, incoming, lend, row_starts
 from lbm.memory import load_cell
 from lbm.stencil import C, Q, W
 
+__all__ = ["SUMS", "plane_sums", "read", "read_cell", "write"]
+
 SUMS = ("mass", "momentum_x", "momentum_y", "momentum_z", "kinetic_energy", "outside")
 
 

@@ -11,7 +11,10 @@ from pathlib import Path
 
 import h5py
 
+from lbm import arguments
 from lbm.errors import OutputError
+
+__all__ = ["write_aside"]
 
 
 class _Sink(io.FileIO):
@@ -45,8 +48,8 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
     Raises :class:`lbm.errors.OutputError` if that fails (disk full, no permission); a file that was at
     ``path`` is then still there, unchanged.
     """
-    path = Path(path)
-    if not path.name:
+    path = arguments.path("file", path)
+    if not path.name or "\0" in str(path):
         raise OutputError(f"{str(path)!r} names no file")
     path = path.resolve()  # through links, which stay what they are
     aside = path.with_name(f".{path.name}.{os.getpid()}.part")

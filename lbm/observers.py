@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,13 +10,17 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from lbm import fields
+from lbm import arguments, fields
 from lbm.errors import DivergenceError, InputError
 from lbm.scales import Scales
+from lbm.stencil import CS2
 from lbm.vtkhdf import write_image
 
 if TYPE_CHECKING:
     from lbm.simulation import Simulation
+
+
+__all__ = ["Average", "Checkpoint", "DivergenceGuard", "FieldOutput", "Observer", "Probe", "Sums", "checked"]
 
 
 class Observer(Protocol):
@@ -32,22 +35,15 @@ class Observer(Protocol):
 def checked(observers: Iterable[Observer]) -> list[Observer]:
     """``observers`` as a list; :class:`InputError` for what is no list or holds what cannot observe."""
     if not isinstance(observers, Iterable):
-        raise InputError(f"observers = {observers!r}: give a list of observers, also of one")
+        raise InputError(f"observers = {arguments.shown(observers)}: give a list of observers, also of one")
     found = list(observers)
     for observer in found:
         if isinstance(observer, type) or not callable(observer) or not hasattr(observer, "every"):
-            raise InputError(f"{observer!r}: no observer; give an object with ``every`` (steps) and a call")
-        _check_every(observer.every)
+            raise InputError(
+                f"{arguments.shown(observer)}: no observer; give an object with ``every`` (steps) and a call"
+            )
+        arguments.count("every", observer.every, least=1)
     return found
-
-
-def _check_every(every: int) -> None:
-    try:
-        if operator.index(every) >= 1:
-            return
-    except TypeError:
-        pass
-    raise InputError(f"every = {every!r}: must be a whole number of steps, at least 1")
 
 
 @dataclass(frozen=True)
@@ -59,7 +55,11 @@ class DivergenceGuard:
     top_speed: float = 0.5
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        arguments.count("every", self.every, least=1)
+        limits = arguments.array("density", self.density)
+        if limits.shape != (2,) or not 0 <= limits[0] < limits[1]:
+            raise InputError(f"density = {arguments.shown(self.density)}: give the lowest and the highest allowed")
+        arguments.positive("top_speed", self.top_speed)
 
     def __call__(self, simulation: Simulation) -> None:
         """Raise :class:`lbm.errors.DivergenceError` naming step, cell and value."""
@@ -97,7 +97,7 @@ class Sums:
     rows: list[np.ndarray] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        arguments.count("every", self.every, least=1)
 
     def __call__(self, simulation: Simulation) -> None:
         """Append one row."""
@@ -116,7 +116,10 @@ class Probe:
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        arguments.count("every", self.every, least=1)
+        if isinstance(self.cell, str) or not isinstance(self.cell, Iterable) or len(tuple(self.cell)) != 3:
+            raise InputError(f"cell = {arguments.shown(self.cell)}: give three whole numbers (i, j, k)")
+        self.cell = tuple(arguments.count("cell", i) for i in self.cell)
 
     def __call__(self, simulation: Simulation) -> None:
         """Append one row."""
@@ -137,7 +140,7 @@ class Average:
     velocity: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        arguments.count("every", self.every, least=1)
 
     def __call__(self, simulation: Simulation) -> None:
         """Take the present fields into the mean."""
@@ -152,7 +155,11 @@ class Average:
 
 @dataclass
 class FieldOutput:
-    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView, in SI if ``scales`` are given."""
+    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView, in SI if ``scales`` are given.
+
+    Cell data ``density``, ``velocity`` and ``pressure``, c_s^2 (rho - 1) over that of the fluid at rest; field
+    data ``step`` and ``TimeValue``.
+    """
 
     every: int
     directory: Path | str
@@ -161,30 +168,51 @@ class FieldOutput:
     written: list[Path] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        arguments.count("every", self.every, least=1)
+        arguments.path("directory", self.directory)
+        if not isinstance(self.stem, str) or not self.stem or "/" in self.stem or "\0" in self.stem:
+            raise InputError(f"stem = {arguments.shown(self.stem)}: give the beginning of a file's name")
+        if not isinstance(self.scales, Scales | None):
+            raise InputError(
+                f"scales = {arguments.shown(self.scales)}: give lbm.Scales, or None for lattice units"
+            )
 
     def __call__(self, simulation: Simulation) -> None:
         """Write one file."""
         path = Path(self.directory) / f"{self.stem}_{simulation.steps:08d}.vtkhdf"
         rho, u = simulation.fields()
         scales = self.scales or Scales(1.0, 1.0)
-        written = {"density": scales.si(rho, "density"), "velocity": scales.si(u, "velocity")}
-        write_image(path, written, spacing=scales.cell_m)
+        written = {
+            "density": scales.si(rho, "density"),
+            "velocity": scales.si(u, "velocity"),
+            "pressure": scales.si(CS2 * (rho - 1), "pressure"),
+        }
+        now = scales.si(float(simulation.steps), "time")
+        write_image(path, written, spacing=scales.cell_m, step=simulation.steps, TimeValue=now)
         self.written.append(path)
 
 
 @dataclass
 class Checkpoint:
-    """Saves the simulation to ``path``; only a complete file of a sound state replaces the previous one."""
+    """Saves the simulation to ``path``; only a complete file of a sound state replaces the previous one.
+
+    ``guard`` None saves unchecked.
+    """
 
     every: int
     path: Path | str
-    guard: DivergenceGuard = DivergenceGuard()
+    guard: DivergenceGuard | None = DivergenceGuard()
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        arguments.count("every", self.every, least=1)
+        arguments.path("path", self.path)
+        if not isinstance(self.guard, DivergenceGuard | None):
+            raise InputError(
+                f"guard = {arguments.shown(self.guard)}: give a DivergenceGuard, or None for no check"
+            )
 
     def __call__(self, simulation: Simulation) -> None:
         """Check and save."""
-        self.guard(simulation)
+        if self.guard is not None:
+            self.guard(simulation)
         simulation.save(self.path)

@@ -12,11 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lbm.bodies import FixedBody
-from lbm.faces import NoSlip
+from lbm.faces import Inlet, NoSlip, Outlet
+from lbm.fixed_body import FixedBody
 from lbm.rates import Rates
 from lbm.simulation import Simulation
 from lbm.stencil import C, Q
+
+__all__ = ["PROBLEMS", "Case", "Problem"]
 
 _THIN = 4  # cells along an axis on which nothing depends
 _SPEED_AT_16 = 0.02  # lattice speed at 16 cells
@@ -165,6 +167,38 @@ def _womersley(n, rates, dtype, nu, axis=2, direction=0, womersley=3.0) -> Case:
     return Case(simulation, round(2 * np.pi / omega * 1.1), exact)
 
 
+def _entering_poiseuille(n, rates, dtype, nu, axis=2, direction=0) -> Case:
+    """Between still walls normal to ``axis``: a parabola at the inlet, density 1 at the outlet 2 n further on."""
+    u0, y = _speed(n), _centres(n)
+    shape = tuple({axis: n, direction: 2 * n}.get(a, _THIN) for a in range(3))
+    flow = _along(4 * u0 * y * (n - y) / n**2, axis, direction, shape)
+    entering = np.moveaxis(flow, 0, -1).take(0, direction)
+    drop = 3 * 8 * nu * u0 / n**2  # of density, per cell
+    upstream = _along(drop * (2 * n - _centres(2 * n)), direction, 0, shape)[0]
+    own = "xyz"[direction]
+    faces = {own + "-": Inlet(entering), own + "+": Outlet(), "xyz"[axis]: "no-slip"}
+    simulation = Simulation(shape, rates, faces=faces, dtype=dtype)
+    simulation.set_flow(1 + upstream, flow)
+    return Case(simulation, round(0.5 * n * n / nu), lambda t: flow)
+
+
+def _entering_couette(n, rates, dtype, nu, axis=2, direction=0) -> Case:
+    """Between a still and a moving wall: a linear profile at the inlet, an outlet 2 n further on."""
+    u0 = _speed(n)
+    shape = tuple({axis: n, direction: 2 * n}.get(a, _THIN) for a in range(3))
+    flow = _along(u0 * _centres(n) / n, axis, direction, shape)
+    own, across = "xyz"[direction], "xyz"[axis]
+    faces = {
+        own + "-": Inlet(np.moveaxis(flow, 0, -1).take(0, direction)),
+        own + "+": Outlet(),
+        across + "-": NoSlip(),
+        across + "+": NoSlip(_unit(direction, u0)),
+    }
+    simulation = Simulation(shape, rates, faces=faces, dtype=dtype)
+    simulation.set_flow(1.0, flow)
+    return Case(simulation, round(0.5 * n * n / nu), lambda t: flow)
+
+
 def _duct(n, rates, dtype, nu, direction=0) -> Case:
     """Square duct along ``direction``."""
     a, b = [d for d in range(3) if d != direction]
@@ -209,7 +243,7 @@ def _inclined_poiseuille(n, rates, dtype, nu) -> Case:
     profile = np.where(solid, 0.0, 4 * top * distance * (width - distance) / width**2)
     flow = along.reshape(3, 1, 1, 1) * profile
     simulation = Simulation(shape, rates, force=tuple(8 * nu * top / width**2 * along), dtype=dtype)
-    simulation.passes.append(FixedBody(solid, fraction))
+    simulation.add(FixedBody(solid, fraction))
     simulation.set_flow(1.0, flow)
     return Case(simulation, round(0.5 * n * n / nu), lambda t: flow, ~solid)
 
@@ -224,6 +258,8 @@ PROBLEMS = {
         Problem("poiseuille", f"{_WHITE}, sec. 3-3", 0.05, _poiseuille),
         Problem("inclined-poiseuille", f"{_WHITE}, sec. 3-3", 0.05, _inclined_poiseuille),
         Problem("couette", f"{_WHITE}, sec. 3-2", 0.05, _couette),
+        Problem("entering-poiseuille", f"{_WHITE}, sec. 3-3", 0.05, _entering_poiseuille),
+        Problem("entering-couette", f"{_WHITE}, sec. 3-2", 0.05, _entering_couette),
         Problem(
             "oscillating-wall",
             f"Stokes' second problem in a gap; {_WHITE}, sec. 3-5",

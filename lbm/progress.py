@@ -53,11 +53,12 @@ class Progress:
 
     def compiling(self) -> None:
         """Say that the first run of a new version will take longer."""
-        self._console.print("compiling kernels, once for this version ...")
+        self._console.print("compiling kernels ...")
 
-    def compiled(self, seconds: float) -> None:
-        """Say that kernels had to be compiled."""
-        self._console.print(f"compiling took {seconds:.1f} s; later runs load the kernels from the cache")
+    def compiled(self, seconds: float, kept: bool) -> None:
+        """Say that kernels had to be compiled, and whether they are ``kept`` on the disk."""
+        later = "later runs load the kernels from the cache" if kept else "later processes compile again"
+        self._console.print(f"compiling took {seconds:.1f} s; {later}")
         self._start = time.perf_counter()
 
     def stop(self, step: int) -> list[int]:

@@ -8,26 +8,24 @@ Viscosities follow from d'Humieres et al. (2002), with c_s^2 = 1/3::
 
 from __future__ import annotations
 
-import math
-import numbers
 from dataclasses import dataclass, fields
 
 import numpy as np
 
+from lbm import arguments
 from lbm.errors import InputError
 
+__all__ = ["PRESETS", "Rates"]
 
-def _number(value, name: str) -> float:
-    """``value`` itself, if it is a number."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise InputError(f"{name} = {value!r}: must be a number")
-    return value
+_FINER = "raise the viscosity in lattice units (more cells or a higher lattice speed)"
+_COARSER = "lower the viscosity in lattice units (fewer cells or a lower lattice speed)"
 
 
 def _rate(viscosity: float, factor: float, name: str) -> float:
-    if not (math.isfinite(_number(viscosity, name)) and viscosity > 0):
-        raise InputError(f"{name} = {viscosity:g} in lattice units: must be finite and greater than 0")
-    return 1.0 / (viscosity / factor + 0.5)
+    rate = 1.0 / (arguments.positive(f"{name} in lattice units", viscosity) / factor + 0.5)
+    if rate == 2:
+        raise InputError(f"{name} = {viscosity:g} in lattice units: too low for double precision; {_FINER}")
+    return rate
 
 
 @dataclass(frozen=True)
@@ -47,13 +45,10 @@ class Rates:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = _number(getattr(self, field.name), f"relaxation rate s_{field.name}")
-            if not (math.isfinite(value) and 0 < value < 2):
-                raise InputError(
-                    f"relaxation rate s_{field.name} = {value:g}: must lie in (0, 2), that is, "
-                    "relaxation time > 0.5; "
-                    "raise the viscosity in lattice units (more cells or a higher lattice speed)"
-                )
+            value = arguments.number(f"relaxation rate s_{field.name}", getattr(self, field.name))
+            if not 0 < value < 2:
+                mend = f"; {_COARSER if value <= 0 else _FINER}" if field.name == "nu" else ""
+                raise InputError(f"relaxation rate s_{field.name} = {value:g}: must lie in (0, 2){mend}")
 
     @classmethod
     def dhumieres2002(cls, viscosity: float) -> Rates:
@@ -72,9 +67,10 @@ class Rates:
         every viscosity (Ginzburg, Verhaeghe & d'Humieres, Commun. Comput. Phys. 3 (2008) 427).
         """
         even = _rate(viscosity, 1 / 3, "viscosity")
-        if not (math.isfinite(_number(magic, "magic parameter")) and magic > 0):
-            raise InputError(f"magic parameter = {magic:g}: must be greater than 0; 3/16 is the usual choice")
-        odd = 1.0 / (magic / (1 / even - 0.5) + 0.5)
+        odd = 1.0 / (arguments.positive("magic parameter (3/16 is usual)", magic) / (1 / even - 0.5) + 0.5)
+        if odd in (0, 2):
+            mend = _COARSER if odd == 2 else _FINER
+            raise InputError(f"viscosity = {viscosity:g} with magic parameter {magic:g}: out of range; {mend}")
         return cls(nu=even, e=even, eps=even, q=odd, pi=even, m=odd)
 
     @classmethod

@@ -6,7 +6,12 @@ import math
 import warnings
 from dataclasses import dataclass
 
+import numpy as np
+
+from lbm import arguments
 from lbm.errors import InputError, OutsideRangeWarning
+
+__all__ = ["DIMENSIONS", "FlowScales", "Scales"]
 
 DIMENSIONS: dict[str, tuple[int, int, int]] = {
     "length": (1, 0, 0),
@@ -37,22 +42,22 @@ class Scales:
 
     def __post_init__(self) -> None:
         for name in ("cell_m", "step_s", "density_kg_m3"):
-            _positive(name, getattr(self, name))
+            arguments.positive(name, getattr(self, name))
 
     def unit(self, quantity: str) -> float:
         """SI value of one lattice unit of ``quantity`` (a key of :data:`DIMENSIONS`)."""
-        if quantity not in DIMENSIONS:
-            raise InputError(f"quantity {quantity!r} unknown; known: {', '.join(DIMENSIONS)}")
+        if not isinstance(quantity, str) or quantity not in DIMENSIONS:
+            raise InputError(f"quantity {arguments.shown(quantity)} unknown; known: {', '.join(DIMENSIONS)}")
         length, time, mass = DIMENSIONS[quantity]
         return self.cell_m**length * self.step_s**time * (self.density_kg_m3 * self.cell_m**3) ** mass
 
     def si(self, value, quantity: str):
-        """``value`` in lattice units, in SI."""
-        return value * self.unit(quantity)
+        """``value`` in lattice units, a number or array, in SI."""
+        return _numbers(value) * self.unit(quantity)
 
     def lattice(self, value, quantity: str):
-        """``value`` in SI, in lattice units."""
-        return value / self.unit(quantity)
+        """``value`` in SI, a number or array, in lattice units."""
+        return _numbers(value) / self.unit(quantity)
 
 
 @dataclass(frozen=True)
@@ -91,7 +96,7 @@ class FlowScales:
             "lattice_speed": lattice_speed,
         }
         for name, value in given.items():
-            _positive(name, value)
+            arguments.positive(name, value)
         cell = length_m / cells
         scales = Scales(cell, lattice_speed * cell / speed_m_s, density_kg_m3)
         flow = cls(scales, lattice_speed, cells, scales.lattice(viscosity_m2_s, "kinematic viscosity"))
@@ -163,6 +168,8 @@ class FlowScales:
             warnings.warn(f"{'; '.join(advice)} ({state})", OutsideRangeWarning, stacklevel=3)
 
 
-def _positive(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0):
-        raise InputError(f"{name} = {value:g}: must be finite and greater than 0")
+def _numbers(value):
+    """``value`` itself if it is a number or an array of numbers, else as such an array."""
+    if isinstance(value, np.ndarray | np.generic | float | int) and np.asarray(value).dtype.kind in "iuf":
+        return value
+    return arguments.array("value", value)

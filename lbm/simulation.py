@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import operator
-import os
+import math
 import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -11,8 +10,10 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from lbm import cache, checkpoint, faces, fields, kernels
+from lbm import arguments, bodies, cache, checkpoint, face_passes, fields, kernels
+from lbm.bodies import Body
 from lbm.errors import InputError
+from lbm.faces import Face, Periodic, resolve
 from lbm.interrupt import interrupts_deferred
 from lbm.lattice import Lattice
 from lbm.observers import DivergenceGuard, Observer, checked
@@ -20,14 +21,12 @@ from lbm.progress import Progress
 from lbm.rates import Rates
 from lbm.stencil import Q
 
-_SMALLEST = 4
-_CELLS_WORTH_A_THREAD = 16_384  # fewer are done before another thread has woken
+__all__ = ["Force", "Simulation"]
+
 _TILE_BYTES = 4 * 2**20
 """What three planes of a strip of rows may take when two steps are made in one sweep."""
 
 Force = Sequence[float] | Callable[[float], Sequence[float]]
-Pass = Callable[[Lattice, int, tuple | None], None]
-"""Changes populations after a step: called with the lattice, the steps made before it, and its force."""
 
 
 class Simulation:
@@ -41,12 +40,16 @@ class Simulation:
         "no-slip", "free-slip", "outlet", or a record of :mod:`lbm.faces`.
     force : force density, 3 components, or a function of time giving them (called at whole steps).
     dtype : float64 or float32; populations are stored as deviations from rest.
-    threads : default all that the size of the box is worth; results do not depend on it.
+    threads : default all that the size of the box is worth; results do not depend on it. Processes started
+        after a run must be spawned: a forked one would wait for ever for the threads it has not inherited.
 
     Cell (i, j, k) has its centre at (i + 1/2, j + 1/2, k + 1/2); walls lie on the faces of the box.
 
     A new simulation is fluid at rest. Collision n applies the force of time n, half of which velocities at time
     n already hold (Guo, Zheng & Shi, Phys. Rev. E 65 (2002) 046308): momentum gains the trapezoidal sum.
+
+    The stencil is not quite Galilean invariant: a shear wave in a mean flow U along its wave vector decays with
+    (1 - 3 U^2) times the viscosity set.
     """
 
     def __init__(
@@ -54,26 +57,51 @@ class Simulation:
         shape: tuple[int, int, int],
         rates: Rates,
         *,
-        faces: dict[str, faces.Face | str] | None = None,
+        faces: dict[str, Face | str] | None = None,
         force: Force | None = None,
         dtype: str | type | np.dtype = np.float64,
         threads: int | None = None,
     ):
-        self.shape = _checked_shape(shape)
-        self.dtype = np.dtype(dtype)
-        if self.dtype not in (np.dtype(np.float64), np.dtype(np.float32)):
-            raise InputError(f"dtype {self.dtype}: use float64 or float32")
-        self.threads = _checked_threads(threads, int(np.prod(self.shape)))
-        self.faces = _resolve(faces)
+        self._dtype = arguments.precision(dtype)
+        self._shape = arguments.box(shape, self._dtype.itemsize)
+        if not isinstance(rates, Rates):
+            hint = "; call the preset, as Rates.bgk(viscosity)" if callable(rates) else ""
+            raise InputError(f"rates = {arguments.shown(rates)}: give lbm.Rates{hint}")
+        self.threads = arguments.threads(threads, math.prod(self._shape))
+        self._faces = resolve(faces)
         self.given_force = force
-        self.steps = 0
-        self.lattice = Lattice(self.shape, tuple(f.kind for f in self.faces), self.dtype)
-        self.passes: list[Pass] = _passes(self.faces, self.lattice.grid)
+        self._steps = 0
+        try:
+            self.lattice = Lattice(self._shape, tuple(f.kind for f in self._faces), self._dtype)
+        except MemoryError:
+            raise arguments.too_large(self._shape, self._dtype.itemsize) from None
+        self._face_passes = face_passes.passes(self._faces, self.lattice.grid)
+        self._bodies: list[Body] = []
         self._rates, self._scaled_rates = rates, rates.scaled(self.dtype)
         self._running = self._half_done = False
         self._seen_start: list[Observer] = []
         if any(self._force_at(0.0) or ()):
             self.set_flow()  # without a force, the populations of a new lattice are those of rest
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Cells along x, y, z."""
+        return self._shape
+
+    @property
+    def dtype(self) -> np.dtype:
+        """Precision of the populations."""
+        return self._dtype
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """Boundaries in the order x-, x+, y-, y+, z-, z+."""
+        return self._faces
+
+    @property
+    def steps(self) -> int:
+        """Steps made since the start of the flow: the time."""
+        return self._steps
 
     @property
     def rates(self) -> Rates:
@@ -86,34 +114,42 @@ class Simulation:
         return self._force_at(float(self.steps))
 
     def _force_at(self, when: float) -> tuple[float, float, float] | None:
-        if self.given_force is None:
-            return None
-        force = self.given_force(when) if callable(self.given_force) else self.given_force
-        try:
-            value = np.asarray(force, dtype=float)
-        except (TypeError, ValueError):
-            value = np.empty(0)
-        if value.shape != (3,) or not np.isfinite(value).all():
-            at = f" at time {when:g}" if callable(self.given_force) else ""
-            raise InputError(f"force = {force!r}{at}: give 3 finite components")
-        return tuple(float(v) for v in value)
+        return arguments.force(self.given_force, when)
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """What :meth:`add` has put into the fluid."""
+        return tuple(self._bodies)
+
+    def add(self, body: Body) -> None:
+        """Put ``body`` into the fluid: :class:`lbm.FixedBody`, or what keeps to :class:`lbm.bodies.Body`.
+
+        After every step bodies act in the order in which they were added. A checkpoint holds their states and
+        is refused by a simulation with other ones.
+        """
+        self._refuse_within_run("add")
+        if any(body is other for other in self._bodies):
+            raise InputError(f"{arguments.shown(body)}: is in this simulation already")
+        bodies.attach(body, self.lattice, self.steps)
+        self._bodies.append(body)
 
     def set_flow(self, density=1.0, velocity=(0.0, 0.0, 0.0)) -> None:
         """Start from ``density``, a number or (nx, ny, nz), and ``velocity``, (3,) or (3, nx, ny, nz).
 
-        Resets the count of steps. Velocity gradients enter the non-equilibrium, so the start is smooth.
+        Resets the count of steps; bodies stay as they are. Velocity gradients enter the non-equilibrium, so the
+        start is smooth.
         """
         self._refuse_within_run("set_flow")
-        rho = _field("density", density, (), self.shape)
-        u = _field("velocity", velocity, (3,), (3, *self.shape))
-        if np.any(rho <= 0):
-            raise InputError(f"density: {rho.min():g} at its lowest, must be positive; rest density is 1")
-        periodic = tuple(isinstance(self.faces[2 * axis], faces.Periodic) for axis in range(3))
+        rho = arguments.field("density", density, (), self.shape)
+        u = arguments.field("velocity", velocity, (3,), (3, *self.shape))
+        arguments.density("density", rho)
+        arguments.speed("velocity", u, 0)
+        periodic = tuple(isinstance(self.faces[2 * axis], Periodic) for axis in range(3))
         force = self._force_at(0.0)
         with interrupts_deferred():
             self._half_done = True
             fields.write(self.lattice, rho, u, force, self.rates.viscosity, periodic)
-            self.steps = 0
+            self._steps = 0
             self._seen_start = []
             self._half_done = False
 
@@ -135,7 +171,7 @@ class Simulation:
     @property
     def bytes_per_cell(self) -> float:
         """Memory of the populations, pads included."""
-        return self.lattice.populations.nbytes / np.prod(self.shape)
+        return self.lattice.populations.nbytes / math.prod(self.shape)
 
     def save(self, path: Path | str) -> None:
         """Write a checkpoint; see :mod:`lbm.checkpoint`."""
@@ -146,7 +182,12 @@ class Simulation:
         """Continue from a checkpoint of a simulation set up like this one; see :mod:`lbm.checkpoint`."""
         self._refuse_within_run("restore")
         with interrupts_deferred():
-            checkpoint.restore(self, path)  # refuses the file before it changes anything
+            saved = checkpoint.read(self, path)  # refuses the file before anything is changed
+            self._half_done = True
+            self.lattice.slots()[...] = saved.slots
+            self.lattice.parity, self._steps = saved.parity, saved.steps
+            for body, state in zip(self._bodies, saved.states, strict=True):
+                bodies.set_state(body, state)
             self._half_done = False
             self._seen_start = []
 
@@ -176,19 +217,19 @@ class Simulation:
         """
         self._refuse_within_run("run")
         self._refuse_half_done()
-        steps = _checked_count("steps", steps)
+        steps = arguments.count("steps", steps)
         watchers = ([] if guard is None else checked([guard])) + checked(observers)
         threads_before = numba.get_num_threads()
         numba.set_num_threads(self.threads)
         try:
             self._running = True
-            with Progress(progress, steps, int(np.prod(self.shape))) as shown:
+            with Progress(progress, steps, math.prod(self.shape)) as shown:
                 if cache.is_empty():
                     shown.compiling()
                 compiled_before = cache.compiled_count()
                 seconds = self.compile()
                 if cache.compiled_count() > compiled_before:
-                    shown.compiled(seconds)
+                    shown.compiled(seconds, cache.keeps())
                 if self.steps == 0:
                     self._show_start(watchers)
                 end = self.steps + steps
@@ -220,10 +261,7 @@ class Simulation:
 
     def _refuse_half_done(self) -> None:
         if self._half_done:
-            raise InputError(
-                f"the simulation was stopped amid a change of its populations, after step {self.steps}; "
-                "set_flow or restore it first"
-            )
+            raise InputError(f"stopped amid a change after step {self.steps}; set_flow or restore it first")
 
     def _typed(self, force):
         return None if force is None else tuple(self.dtype.type(v) for v in force)
@@ -231,81 +269,32 @@ class Simulation:
     def _advance(self, until: int) -> None:
         """Step to ``until``, or to the first whole step after Ctrl-C."""
         lattice = self.lattice
-        plain = not self.passes and not callable(self.given_force)
+        corrections = [*self._face_passes, *self._bodies]
+        prepare = [change.prepare for change in corrections if hasattr(change, "prepare")]
+        plain = not corrections and not callable(self.given_force)
         force = self._force_at(float(self.steps))
         typed = self._typed(force)
         planes = self.shape[2]
-        blocks = max(1, min(self.threads, planes // _SMALLEST))
-        row_bytes = 3 * Q * lattice.grid.row * lattice.dtype.itemsize
-        tile = max(8, _TILE_BYTES // row_bytes)
+        blocks = max(1, min(self.threads, planes // arguments.SMALLEST))
+        tile = max(8, _TILE_BYTES // (3 * Q * lattice.grid.row * lattice.dtype.itemsize))
         grid, rows, rates = lattice.grid, lattice.rows, self._scaled_rates
         with interrupts_deferred() as held:
             while self.steps < until and not held:
                 if plain and lattice.parity == 0 and until - self.steps >= 2:
                     self._half_done = True
                     kernels.sweep_two(lattice.populations, grid, rows, rates, typed, blocks, tile, planes)
-                    self.steps += 2
+                    self._steps += 2
                     self._half_done = False
                     continue
                 if callable(self.given_force):
                     force = self._force_at(float(self.steps))
                     typed = self._typed(force)
+                for ready in prepare:
+                    ready(lattice, self._steps)
                 self._half_done = True
                 kernels.sweep(lattice.populations, grid, rows, lattice.parity, rates, typed, planes)
                 lattice.parity ^= 1
-                for change in self.passes:
-                    change(lattice, self.steps, force)
-                self.steps += 1
+                for change in corrections:
+                    change(lattice, self._steps, force)
+                self._steps += 1
                 self._half_done = False
-
-
-# The keyword ``faces`` of Simulation hides the module of that name in its constructor.
-_resolve = faces.resolve
-_passes = faces.passes
-
-
-def _checked_shape(shape) -> tuple[int, int, int]:
-    try:
-        nx, ny, nz = (operator.index(n) for n in shape)
-    except (TypeError, ValueError):
-        raise InputError(f"shape = {shape!r}: give three whole numbers of cells (nx, ny, nz)") from None
-    if min(nx, ny, nz) < _SMALLEST:
-        raise InputError(f"shape = {(nx, ny, nz)}: at least {_SMALLEST} cells along each axis, also periodic ones")
-    return nx, ny, nz
-
-
-def _checked_threads(threads: int | None, cells: int) -> int:
-    available = numba.config.NUMBA_NUM_THREADS
-    if threads is None:
-        return max(1, min(available, cells // _CELLS_WORTH_A_THREAD))
-    threads = _checked_count("threads", threads)
-    if not 1 <= threads <= available:
-        raise InputError(
-            f"threads = {threads}: between 1 and {available} "
-            f"(of {os.cpu_count()} cores; NUMBA_NUM_THREADS raises it)"
-        )
-    return threads
-
-
-def _checked_count(name: str, value) -> int:
-    try:
-        count = operator.index(value)
-    except TypeError:
-        raise InputError(f"{name} = {value!r}: must be a whole number") from None
-    if count < 0:
-        raise InputError(f"{name} = {count}: must not be negative")
-    return count
-
-
-def _field(name: str, value, uniform: tuple[int, ...], shape: tuple[int, ...]) -> np.ndarray:
-    """``value`` as a field of ``shape``; nothing but that shape and the ``uniform`` one is taken for a field."""
-    value = np.asarray(value, dtype=float)
-    if value.shape not in (uniform, shape):
-        raise InputError(f"{name}: shape {value.shape} given, {uniform} or {shape} needed")
-    if value.shape == uniform:
-        value = value.reshape(uniform + (1,) * (len(shape) - len(uniform)))
-    field = np.broadcast_to(value, shape)
-    if not np.isfinite(field).all():
-        cell = tuple(int(i) for i in np.argwhere(~np.isfinite(field))[0])
-        raise InputError(f"{name}: not finite, first at index {cell}")
-    return field

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+__all__ = ["CS2", "OPPOSITE", "C", "Q", "W", "mirrored"]
+
 Q = 19
 CS2 = 1.0 / 3.0
 """Square of the speed of sound in lattice units."""

@@ -12,7 +12,7 @@ from restitution.laws.cut_off import CutOffLaw
 from restitution.laws.pair import JeffreyOnishi1984Lubrication
 
 NAMES = laws.names("resistance")
-OTHERS = {"kappa": 0.7, "v_ratio": 1.0}
+OTHERS = {"kappa": 0.7, "v_ratio": 1.0, "eta": 0.01}
 """Values of the variables besides eps."""
 
 # Goldman, Cox & Brenner, Chem. Eng. Sci. 22, 637 (1967), exact: gap/radius; force and torque from translation,

@@ -246,6 +246,7 @@ def latex_name(symbol: str) -> str:
         "mu": r"\mu",
         "rho": r"\rho",
         "sigma": r"\sigma",
+        "tau": r"\tau",
     }
     letters, digits, word = re.fullmatch(r"([A-Za-z]+)(\d*)_?(.*)", symbol).groups()
     below = digits + (rf"\mathrm{{{word}}}" if len(word) > 1 else word)

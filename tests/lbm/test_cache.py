@@ -74,5 +74,10 @@ def test_without_a_usable_cache_kernels_are_compiled_in_memory(trouble, first, t
             path.write_bytes(path.read_bytes()[:20] if path.suffix == ".nbc" else b"")
     _, compiled, found, said = _run(root, place)
     assert compiled > 0
-    assert "CacheWarning" in said
+    assert said.count("CacheWarning: ") == 1
     assert found == result
+    assert ("load the kernels from the cache" in said) == (trouble == "damaged")
+    if trouble == "damaged":  # replaced by that run
+        _, compiled, found, said = _run(root, place)
+        assert (compiled, found) == (0, result)
+        assert "CacheWarning" not in said

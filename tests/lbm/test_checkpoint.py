@@ -94,6 +94,16 @@ def test_another_simulation_is_refused_and_left_alone(tmp_path, changes, named):
     assert (other.lattice.slots() == before).all()
 
 
+def test_only_what_differs_is_named(tmp_path):
+    path = tmp_path / "state.h5"
+    lid = np.zeros((9, 8, 3))
+    _flow(faces={"z-": "no-slip", "z+": NoSlip(lid)}).save(path)
+    lid[4, 4, 0] = 0.01
+    with pytest.raises(InputError, match=r"faces\.z\+\.velocity = ") as caught:
+        _flow(faces={"z-": "no-slip", "z+": NoSlip(lid)}).restore(path)
+    assert len(str(caught.value)) < len(str(path)) + 300
+
+
 def test_missing_and_foreign_files_are_refused(tmp_path):
     flow = _flow()
     with pytest.raises(InputError, match="no such"):
@@ -132,8 +142,13 @@ def test_outputs_follow_links_and_name_what_cannot_be_written(tmp_path):
     flow.save(link)
     assert link.is_symlink()
     (tmp_path / "file").touch()
-    for bad in (tmp_path / "file" / "c.h5", tmp_path, tmp_path / ("x" * 300), ""):
+    for bad in (tmp_path / "file" / "c.h5", tmp_path, tmp_path / ("x" * 300), "", "x\0y"):
         with pytest.raises(OutputError):
+            flow.save(bad)
+        with pytest.raises(InputError):
+            flow.restore(bad)
+    for bad in (None, 3):
+        with pytest.raises(InputError, match="path"):
             flow.save(bad)
 
 

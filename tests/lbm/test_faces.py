@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from lbm import FreeSlip, Inlet, InputError, NoSlip, Outlet, OutsideRangeWarning, Rates, Simulation
-from lbm.bodies import FixedBody
+from lbm import FixedBody, FreeSlip, Inlet, InputError, NoSlip, Outlet, OutsideRangeWarning, Rates, Simulation
 
 RATES = Rates.two_relaxation_times(0.1)
 FACES = {"x": 0, "y": 1, "z": 2}
@@ -89,7 +88,7 @@ def test_walls_and_inlets_have_their_velocity_at_any_density(rest):
     solid = np.zeros((4, 4, 8), dtype=bool)
     solid[:, :, [0, -1]] = True
     dragged = Simulation((4, 4, 8), RATES)
-    dragged.passes.append(FixedBody(solid, velocity=(0.02, -0.01, 0.0)))
+    dragged.add(FixedBody(solid, velocity=(0.02, -0.01, 0.0)))
     dragged.set_flow(rest)
     dragged.run(2001)
     assert dragged.velocity[0, :, :, 1:-1] == pytest.approx(np.full((4, 4, 6), 0.02), rel=1e-9)
@@ -118,12 +117,74 @@ def test_wall_velocity_may_vary_over_the_face():
     assert flow.velocity[0, 0, 0] == pytest.approx(0.02 * (np.arange(8) + 0.5) / 8, rel=1e-6)
 
 
+def _rolls(n, speed):
+    """Stokes flow (u, w) on cells (x, z) over a wall at z = 0 with u = speed sin(kx), still wall at n = 2 pi/k.
+
+    From psi = (B z cosh kz + (C + D z) sinh kz) sin kx, biharmonic, with psi = 0 on both walls.
+    """
+    k = 2 * np.pi / n
+    ch, sh = np.cosh(k * n), np.sinh(k * n)
+    conditions = [[1, k, 0], [n * ch, sh, n * sh], [ch + n * k * sh, k * ch, sh + n * k * ch]]
+    b, c, d = np.linalg.solve(conditions, [speed, 0, 0])
+    x, z = (np.arange(n) + 0.5)[:, None], (np.arange(n) + 0.5)[None]
+    ch, sh = np.cosh(k * z), np.sinh(k * z)
+    psi = b * z * ch + (c + d * z) * sh
+    slope = b * ch + b * z * k * sh + d * sh + (c + d * z) * k * ch
+    return slope * np.sin(k * x), -k * psi * np.cos(k * x)
+
+
+def test_a_stretched_wall_is_second_order_and_keeps_the_mass():
+    errors, nu, speed = [], 0.05, 1e-6  # slow: what the solution leaves out is of relative order Re = n speed/nu
+    for n in (8, 16, 32):
+        wall = np.zeros((n, 4, 3))
+        wall[..., 0] = speed * np.sin(2 * np.pi * (np.arange(n) + 0.5) / n)[:, None]
+        flow = Simulation((n, 4, n), Rates.two_relaxation_times(nu), faces={"z-": NoSlip(wall), "z+": "no-slip"})
+        flow.run(round(0.5 * n * n / nu))
+        exact = np.array(_rolls(n, speed))
+        errors.append(np.linalg.norm(flow.velocity[[0, 2], :, 0] - exact) / np.linalg.norm(exact))
+        assert abs(flow.density.mean() - 1) < 1e-15
+    # the order still rises with the resolution: 1.82, 1.93
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.1)
+
+
+@pytest.mark.parametrize("rest", [0.9, 1.0])
+def test_a_lid_slower_towards_its_edges_loses_no_mass(rest):
+    n = 10
+    s = (np.arange(n) + 0.5) / n
+    lid = np.zeros((n, n, 3))
+    lid[..., 0] = 0.1 * (np.sin(np.pi * s) * (1 + s))[:, None]  # not symmetric
+    faces = {"x": "no-slip", "y": "no-slip", "z-": "no-slip", "z+": NoSlip(lid)}
+    flow = Simulation((n, n, n), RATES, faces=faces)
+    flow.set_flow(rest)
+    flow.run(1001)
+    assert flow.density.mean() == pytest.approx(rest, abs=1e-13)
+    assert np.ptp(flow.density) > 1e-3  # the density varies along the lid
+
+
+@pytest.mark.parametrize("n", [6, 12])
+def test_what_inlets_bring_between_still_walls(n):
+    """A plug loses 1/(3n) at the walls, a parabola (n - 1)/(2n^3): sums over the links, by hand."""
+    y = np.arange(n) + 0.5
+    plug, parabola = np.full(n, 1e-3), 1e-5 * y * (n - y)
+    fluxes = 1e-3 * n * (1 - 1 / (3 * n)), 1e-5 * n**3 / 6 * (1 - (n - 1) / (2 * n**3))
+    for profile, flux in zip((plug, parabola), fluxes, strict=True):
+        entering = np.zeros((n, 4, 3))
+        entering[..., 0] = profile[:, None]
+        flow = Simulation((12, n, 4), RATES, faces={"x-": Inlet(entering), "x+": "outlet", "y": "no-slip"})
+        flow.run(3000)
+        through = (flow.density * flow.velocity[0])[:-1].sum(axis=(1, 2)) / 4
+        entered = flow.density[0].mean()  # the push goes with the density at the inlet
+        assert through == pytest.approx(np.full(11, through[0]), rel=1e-6)
+        assert through[0] == pytest.approx(flux * entered, rel=5e-4)
+
+
 @pytest.mark.parametrize(
     ("faces", "named"),
     [
         ({"w": "no-slip"}, "'w'"),
         ({"x": "sticky"}, "sticky"),
         ({"x-": "no-slip"}, "x- and x+"),
+        ({"x": NoSlip([[0.1], [0.0, 1]])}, "rows"),
         ({"x": NoSlip((0.1, 0.0))}, "shape"),
         ({"x": NoSlip(np.ones((3, 3, 3)))}, "shape"),
         ({"x": NoSlip((np.nan, 0, 0))}, "not finite"),
@@ -140,6 +201,10 @@ def test_wall_velocity_may_vary_over_the_face():
         ({"x": None}, "None"),
         ({"x": NoSlip}, r"NoSlip\(...\)"),
         ({"x": 5}, "5"),
+        ({"y-": NoSlip((0.0, 0.0, 5.0)), "y+": "no-slip"}, r"y-: velocity: speed 5"),
+        ({"x-": Inlet((2.0, 0.0, 0.0)), "x+": "outlet"}, "speed 2"),
+        ({"x": Outlet(1000)}, "density: 1000"),
+        ({"x": NoSlip((0, 1j, 0))}, "real"),
         ("no-slip", "mapping"),
     ],
 )

@@ -41,6 +41,10 @@ def _order(problem, preset, coarse, **options):
         ("shear-wave", "dhumieres2002", 16),
         ("poiseuille", "dhumieres2002", 8),
         ("inclined-poiseuille", "two-relaxation-times", 16),
+        ("entering-poiseuille", "two-relaxation-times", 16),
+        ("entering-poiseuille", "dhumieres2002", 8),
+        ("entering-couette", "two-relaxation-times", 16),
+        ("entering-couette", "bgk", 8),
         ("oscillating-wall", "two-relaxation-times", 8),
         ("oscillating-wall", "dhumieres2002", 8),
         ("womersley", "two-relaxation-times", 8),
@@ -113,7 +117,9 @@ def test_all_directions_are_alike(preset):
 
 
 @pytest.mark.parametrize(("axis", "direction"), list(itertools.permutations(range(3), 2)))
-@pytest.mark.parametrize("name", ["poiseuille", "couette", "oscillating-wall"])
+@pytest.mark.parametrize(
+    "name", ["poiseuille", "couette", "oscillating-wall", "entering-poiseuille", "entering-couette"]
+)
 def test_walls_on_every_axis_are_alike(name, axis, direction):
     errors = []
     for options in ({}, {"axis": axis, "direction": direction}):

@@ -65,3 +65,17 @@ def test_refuses_what_cannot_run(change, named):
 def test_unknown_quantity():
     with pytest.raises(InputError, match="charge"):
         Scales(1e-3, 1e-3).unit("charge")
+
+
+def test_lists_are_taken_and_other_things_refused():
+    scales = Scales(2e-4, 4e-6)
+    assert scales.si([1, 2], "velocity") == pytest.approx([50, 100])
+    assert scales.lattice((50, 100), "velocity") == pytest.approx([1, 2])
+    for refused in (
+        lambda: scales.si("a", "velocity"),
+        lambda: scales.si(1, ["velocity"]),
+        lambda: Scales("a", 1, 1),
+        lambda: FlowScales.from_conditions(**{**GONDRET, "length_m": "1"}),
+    ):
+        with pytest.raises(InputError):
+            refused()

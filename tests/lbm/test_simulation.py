@@ -3,9 +3,10 @@ import signal
 import numpy as np
 import pytest
 
-from lbm import DivergenceError, InputError, Rates, Simulation, kernels
-from lbm.faces import NoSlip
+from lbm import Body, DivergenceError, Inlet, InputError, NoSlip, Rates, Simulation, kernels
 from lbm.observers import Average, Checkpoint, DivergenceGuard, FieldOutput, Probe, Sums
+from lbm.scales import Scales
+from lbm.vtkhdf import write_image
 
 RATES = Rates.two_relaxation_times(0.02)
 
@@ -16,6 +17,14 @@ RATES = Rates.two_relaxation_times(0.02)
         ({"shape": (3, 8, 8)}, "at least 4"),
         ({"shape": (8, 8)}, "shape"),
         ({"shape": (8, 8, 8.5)}, "shape"),
+        ({"shape": (10**20, 8, 8)}, "GiB"),
+        ({"shape": (10**5, 10**5, 10**3)}, "GiB"),
+        ({"rates": 0.1}, "rates"),
+        ({"rates": None}, "rates"),
+        ({"rates": Rates.bgk}, "Rates.bgk"),
+        ({"dtype": "abc"}, "dtype"),
+        ({"dtype": 3}, "dtype"),
+        ({"dtype": None}, "dtype"),
         ({"dtype": "float16"}, "float16"),
         ({"threads": 0}, "threads"),
         ({"threads": 10_000}, "threads"),
@@ -36,6 +45,12 @@ def test_bad_arguments_are_refused(arguments, named):
         (1.0, np.full((3, 8, 8, 8), np.nan), r"velocity: not finite"),
         (np.full((8, 8, 8), np.inf), (0.0, 0.0, 0.0), "density: not finite"),
         (-1.0, (0.0, 0.0, 0.0), "positive"),
+        (10.0, (0.0, 0.0, 0.0), "density: 10"),
+        (1.0, (0.0, 1.1, 0.0), "speed 1.1"),
+        (1.0, "abc", "velocity"),
+        (1.0, (0.0, 1j, 0.0), "velocity"),
+        (1.0, ((0.0, 1.0), (0.0,), 0.0), "velocity"),
+        (None, (0.0, 0.0, 0.0), "density"),
     ],
 )
 def test_bad_initial_fields_are_refused(density, velocity, named):
@@ -108,9 +123,10 @@ def test_fields_are_read_by_vtk(tmp_path):
     vtk_io = pytest.importorskip("vtkmodules.vtkIOHDF", reason="needs the vtk wheel")
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
+    scales = Scales(1e-4, 2e-6, 950.0)
     flow = Simulation((5, 6, 7), RATES)
     flow.set_flow(1.0, 0.02 * np.random.default_rng(5).standard_normal((3, 5, 6, 7)))
-    output = FieldOutput(2, tmp_path)
+    output = FieldOutput(2, tmp_path, scales=scales)
     flow.run(2, [output])
     reader = vtk_io.vtkHDFReader()
     reader.SetFileName(str(output.written[-1]))
@@ -119,8 +135,12 @@ def test_fields_are_read_by_vtk(tmp_path):
     assert image.GetDimensions() == (6, 7, 8)  # points of 5 x 6 x 7 cells
     velocity = vtk_to_numpy(image.GetCellData().GetArray("velocity"))
     density = vtk_to_numpy(image.GetCellData().GetArray("density"))
-    assert (velocity.reshape(7, 6, 5, 3) == flow.velocity.transpose(3, 2, 1, 0)).all()
-    assert (density.reshape(7, 6, 5) == flow.density.T).all()
+    pressure = vtk_to_numpy(image.GetCellData().GetArray("pressure"))
+    assert velocity.reshape(7, 6, 5, 3) == pytest.approx(50 * flow.velocity.transpose(3, 2, 1, 0))
+    assert density.reshape(7, 6, 5) == pytest.approx(950 * flow.density.T)
+    assert pressure.reshape(7, 6, 5) == pytest.approx(950 * 50**2 / 3 * (flow.density.T - 1))
+    facts = {name: image.GetFieldData().GetArray(name).GetValue(0) for name in ("step", "TimeValue")}
+    assert facts == {"step": 2, "TimeValue": pytest.approx(4e-6)}
 
 
 def test_negative_steps_are_refused():
@@ -178,13 +198,20 @@ def test_an_interrupted_run_can_be_continued(monkeypatch, sweep, stopped):
     assert (flow.velocity == whole.velocity).all()
 
 
-def test_a_step_that_fails_half_way_is_not_used(tmp_path):
-    def wall(t):
-        if t > 3:
-            raise ZeroDivisionError
-        return 0.0, 0.01, 0.0
+class _Failing(Body):
+    """Fails after the sweep of step number 3."""
 
-    flow = _random_flow(faces={"x-": NoSlip(wall), "x+": "no-slip"})
+    def __call__(self, lattice, step, force):
+        if step == 3:
+            raise ZeroDivisionError
+
+    def describe(self):
+        return {}
+
+
+def test_a_step_that_fails_half_way_is_not_used(tmp_path):
+    flow = _random_flow()
+    flow.add(_Failing())
     flow.run(2)
     flow.save(tmp_path / "sound.h5")
     with pytest.raises(ZeroDivisionError):
@@ -202,10 +229,48 @@ def test_a_step_that_fails_half_way_is_not_used(tmp_path):
     flow.run(3)
 
 
+@pytest.mark.parametrize("bad", [(1.0, 2.0), "up", (np.nan, 0, 0), None, np.ones((5, 5, 3)), (0, 5.0, 0), 1 / 3])
+@pytest.mark.parametrize("face", [NoSlip, Inlet])
+def test_a_face_that_goes_bad_leaves_the_last_whole_step(tmp_path, face, bad):
+    """As for the force: what was made can be read, saved, and continued where the function is mended."""
+    good, mended = (0, 0.01, 0), []
+
+    def velocity(t):
+        return good if t < 3 or mended else bad
+
+    flow = _random_flow(faces={"x-": face(velocity), "x+": "outlet"})
+    with pytest.raises(InputError, match=r"face x-: velocity.*at time 3\.5"):
+        flow.run(5)
+    assert flow.steps == 3
+    flow.save(tmp_path / "three.h5")
+    mended.append(True)
+    whole = _random_flow(faces={"x-": face(velocity), "x+": "outlet"})
+    whole.run(5)
+    flow.run(2)
+    assert (flow.velocity == whole.velocity).all()
+    again = _random_flow(faces={"x-": face(velocity), "x+": "outlet"})
+    again.restore(tmp_path / "three.h5")
+    again.run(2)
+    assert (again.velocity == whole.velocity).all()
+
+
+def test_a_face_function_that_raises_leaves_the_last_whole_step():
+    def wall(t):
+        if t > 3:
+            raise ZeroDivisionError
+        return 0.0, 0.01, 0.0
+
+    flow = _random_flow(faces={"x-": NoSlip(wall), "x+": "no-slip"})
+    with pytest.raises(ZeroDivisionError):
+        flow.run(5)
+    assert flow.steps == 3
+    assert np.isfinite(flow.velocity).all()
+
+
 @pytest.mark.parametrize("bad", [(1.0, 2.0), "up", (np.nan, 0, 0), None])
 def test_a_force_that_goes_bad_leaves_the_last_whole_step(bad):
     flow = _random_flow(force=lambda t: (1e-5, 0, 0) if t < 3 else bad)
-    with pytest.raises(InputError, match=r"force = .* at time 3"):
+    with pytest.raises(InputError, match=r"force at time 3"):
         flow.run(5)
     assert flow.steps == 3
     flow.given_force = (1e-5, 0, 0)
@@ -256,6 +321,83 @@ def test_what_cannot_observe_is_refused(observers):
 def test_observers_need_a_whole_number_of_steps(every):
     with pytest.raises(InputError, match="every"):
         Sums(every)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Probe(1, (0, 0.5, 0)),
+        lambda: Probe(1, (0, 0)),
+        lambda: Probe(1, "abc"),
+        lambda: Probe(1, 3),
+        lambda: Probe(1, (0, -1, 0)),
+        lambda: DivergenceGuard(density=5),
+        lambda: DivergenceGuard(density=("a", 2)),
+        lambda: DivergenceGuard(density=(2, 1)),
+        lambda: DivergenceGuard(top_speed="x"),
+        lambda: DivergenceGuard(top_speed=-1),
+        lambda: DivergenceGuard(top_speed=np.nan),
+        lambda: FieldOutput(1, "here", scales="x"),
+        lambda: FieldOutput(1, None),
+        lambda: FieldOutput(1, "here", stem=None),
+        lambda: FieldOutput(1, "here", stem="a/b"),
+        lambda: Checkpoint(1, None),
+        lambda: Checkpoint(1, "here", guard="x"),
+        lambda: Rates.two_relaxation_times(1e-30),
+        lambda: Rates.bgk(10**400),
+    ],
+)
+def test_bad_settings_are_refused_at_once(make):
+    with pytest.raises(InputError):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("make", "advice"),
+    [
+        (lambda: Rates.two_relaxation_times(1e30), "lower the viscosity"),
+        (lambda: Rates(0, 1, 1, 1, 1, 1), "lower the viscosity"),
+        (lambda: Rates.bgk(1e-30), "raise the viscosity"),
+        (lambda: Rates(2, 1, 1, 1, 1, 1), "raise the viscosity"),
+    ],
+)
+def test_advice_on_the_viscosity_points_the_right_way(make, advice):
+    with pytest.raises(InputError, match=advice):
+        make()
+
+
+@pytest.mark.parametrize("name", ["steps", "shape", "dtype", "faces", "bodies"])
+def test_what_a_simulation_is_cannot_be_assigned(name):
+    with pytest.raises(AttributeError):
+        setattr(Simulation((4, 4, 4), RATES), name, 3)
+
+
+def test_a_checkpoint_without_guard_saves_anything_finite(tmp_path):
+    flow = _random_flow()
+    flow.run(1, [Checkpoint(1, tmp_path / "a.h5", guard=None)], guard=None)
+    assert (tmp_path / "a.h5").is_file()
+
+
+@pytest.mark.parametrize(
+    ("fields", "options"),
+    [
+        ({}, {}),
+        (3, {}),
+        ({"a": np.zeros(3)}, {}),
+        ({"a": "text"}, {}),
+        ({"a": np.zeros((2, 4, 4, 4))}, {}),
+        ({"a/b": np.zeros((4, 4, 4))}, {}),
+        ({3: np.zeros((4, 4, 4))}, {}),
+        ({"a": np.zeros((4, 4, 4)), "b": np.zeros((4, 4, 5))}, {}),
+        ({"a": np.zeros((4, 4, 4))}, {"spacing": 0}),
+        ({"a": np.zeros((4, 4, 4))}, {"spacing": "x"}),
+        ({"a": np.zeros((4, 4, 4))}, {"origin": (0, 0)}),
+    ],
+)
+def test_bad_images_are_refused_and_leave_no_file(tmp_path, fields, options):
+    with pytest.raises(InputError):
+        write_image(tmp_path / "a.vtkhdf", fields, **options)
+    assert not list(tmp_path.iterdir())
 
 
 def test_progress_in_a_log_is_lines(capsys, monkeypatch):

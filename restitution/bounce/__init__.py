@@ -1,0 +1,33 @@
+"""The bouncing sphere as a point particle: a whole trajectory over a wall, from closures, in milliseconds.
+
+    from restitution import datasets, laws
+    from restitution.bounce import Closures, Release, bounce
+
+    conditions = datasets.resource("gondret2002_st152").conditions
+    path = bounce(conditions, Release(gap=9e-3, speed=0.586), Closures(rebound=laws.get("legendre_2005")), end=0.2)
+    path.apexes(), path.impact_table(), path.gap(0.05)
+
+Vertical motion, gap h > 0, velocity v = dh/dt:
+
+    d/dt[(m + C_M m_f) v] = 1/2 m_f C_M'(h) v^2 - (m - m_f) g - drag - wall - history.
+
+:mod:`~restitution.bounce.closures` says what may be chosen, :mod:`~restitution.bounce.kernel` how it is
+integrated, :mod:`~restitution.bounce.history` how the memory is kept, :mod:`~restitution.bounce.added_mass` what
+the wall does to the added mass, :mod:`~restitution.bounce.wake` what a rebound meets,
+:mod:`~restitution.bounce.agreement` how far a record is, :mod:`~restitution.bounce.sensitivity` what matters.
+"""
+
+from restitution.bounce.closures import Closures, Release, terminal_speed
+from restitution.bounce.model import Impact, IntegrationError, Trajectory, bounce
+from restitution.bounce.wake import OwnWake
+
+__all__ = [
+    "Closures",
+    "Impact",
+    "IntegrationError",
+    "OwnWake",
+    "Release",
+    "Trajectory",
+    "bounce",
+    "terminal_speed",
+]

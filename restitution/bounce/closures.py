@@ -1,0 +1,163 @@
+"""What a bouncing sphere is modelled with: the closure of each force, and how it is released."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from functools import lru_cache
+from typing import Literal
+
+from restitution.bounce.wake import OwnWake
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.impact_speed import H_FILM
+from restitution.laws.brenner_1961 import Brenner1961
+from restitution.laws.drag import DragLaw, SchillerNaumann1935, steady
+from restitution.laws.film import YangHunt2008
+from restitution.laws.history import DorganLoth2007, HistoryLaw
+from restitution.laws.rebound import ReboundLaw
+from restitution.laws.resistance import ResistanceLaw
+from restitution.stokes import Speed
+
+ROUGHNESS = 1e-4
+"""Film limit in radii where nobody states a roughness: that of Gondret's spheres (Biegert et al. 2017)."""
+
+
+@dataclass(frozen=True)
+class Closures:
+    """One closure for each force; None switches a force off.
+
+    The viscous loss near the wall is accounted for in one of two ways, never in both:
+
+    - with a ``rebound`` law the film, gap < ``film`` d, is a black box: no viscous force acts inside, only gravity
+      and added mass, and the law's e_eff multiplies the speed with which the motion outside, so carried on, meets
+      the wall. That is the ``far`` speed of :mod:`restitution.impact_speed`;
+    - without one, all forces act down to the gap ``contact``, where the sphere rebounds with the dry restitution.
+      ``lubrication=False`` then keeps the resistance of the wall at its value at the edge of the film.
+    """
+
+    drag: DragLaw | None = field(default_factory=SchillerNaumann1935)
+    wall: ResistanceLaw | None = field(default_factory=Brenner1961)
+    """Adds 6 pi mu r v (lambda - 1) to the drag, so that the sum is Brenner's at small Re."""
+    added_mass: Literal["wall", "free"] | None = "wall"
+    """``wall``: exact C_M(h) of potential flow; ``free``: 1/2 at any gap."""
+    history: HistoryLaw | None = field(default_factory=DorganLoth2007)
+    """The default is the kernel said to hold at the Re of measured rebounds, up to a few hundred."""
+    wake: OwnWake | None = None
+    """The fluid that an approach leaves moving, met by the rebound; not of the literature, so off by default."""
+    rebound: ReboundLaw | None = None
+    lubrication: bool | None = None
+    """Whether the film is resolved; by default where there is no rebound law."""
+    e_dry: float | None = None
+    """Dry restitution, by default that of the conditions."""
+    contact: float | None = None
+    """Gap in m at which the bodies touch, by roughness or elastic film; by default the conditions' roughness."""
+    reduced_modulus: float | None = None
+    """E* of the two bodies in Pa: the contact gap is then at least the elastohydrodynamic one (Yang & Hunt 2008)
+    at the speed with which the sphere enters the film."""
+    film: float = H_FILM
+    """Edge of the film in diameters. A law's constants belong to it: the wider the film, the more of the loss is
+    in e_eff. The same frames want K of Eq. (4) to be 8.4, 10.9 and 14.5 at 0.05, 0.1 and 0.2 d."""
+
+    def __post_init__(self) -> None:
+        if self.lubrication is None:
+            object.__setattr__(self, "lubrication", self.rebound is None)
+        if self.rebound is not None and self.lubrication:
+            raise InputError(
+                Defect(
+                    "counts the loss in the film twice beside a resolved film: leave the one or the other out",
+                    field="rebound",
+                    value=self.rebound.name,
+                )
+            )
+        if self.rebound is not None and self.rebound.speed is Speed.FILM_EDGE:
+            raise InputError(
+                Defect(
+                    "is meant for the speed at the edge of the elastic film, which the far speed is not; "
+                    "ehd_composite takes the film outside it into account",
+                    field="rebound",
+                    value=self.rebound.name,
+                )
+            )
+        bounds = {
+            "e_dry": (0.0, 1.0), "contact": (0.0, math.inf),
+            "reduced_modulus": (1.0, math.inf), "film": (0.0, 10.0),
+        }  # fmt: skip
+        for name, (low, high) in bounds.items():
+            value = getattr(self, name)
+            if value is not None and not low <= value <= high:  # also NaN
+                raise InputError(Defect(f"must lie in [{low:g}, {high:g}]", field=name, value=f"{value:g}"))
+
+    def contact_gap(self, conditions: Conditions, speed: float = 0.0) -> float:
+        """Gap in m at which bodies that enter the film with ``speed`` touch; 0 with a rebound law."""
+        if self.rebound is not None:
+            return 0.0
+        rough = self.film_limit(conditions)
+        if self.reduced_modulus is None or speed <= 0:
+            return rough
+        elastic = YangHunt2008()(speed, conditions.fluid.viscosity, self.reduced_modulus, conditions.sphere.radius)
+        return max(rough, float(elastic))
+
+    def film_limit(self, conditions: Conditions) -> float:
+        """Gap in m that asperities leave: ``contact``, or the greatest roughness stated, or 1e-4 r."""
+        if self.contact is not None:
+            return self.contact
+        stated = [
+            b.roughness for b in (conditions.sphere, conditions.wall) if b is not None and b.roughness is not None
+        ]
+        return max(stated, default=ROUGHNESS * conditions.sphere.radius) or ROUGHNESS * conditions.sphere.radius
+
+    def dry(self, conditions: Conditions) -> float:
+        """The dry restitution; raises :class:`InputError` where nobody states one."""
+        e = self.e_dry if self.e_dry is not None else conditions.sphere.e_dry
+        if e is None:
+            raise InputError(Defect("must be stated: the rebound needs a dry restitution", field="sphere.e_dry"))
+        return e
+
+    def describe(self) -> dict[str, str]:
+        """Each closure by name, for tables and records."""
+        return {f.name: str(getattr(getattr(self, f.name), "name", getattr(self, f.name))) for f in fields(self)}
+
+
+@dataclass(frozen=True)
+class Release:
+    """How the sphere starts: ``gap`` in m, ``speed`` in m/s towards the wall.
+
+    ``developed``: the sphere has moved at this speed for so long that its wake is steady and the history force
+    zero; otherwise the fluid was at rest until the start. By default developed where the speed is not zero.
+    """
+
+    gap: float
+    speed: float = 0.0
+    developed: bool | None = None
+
+    def __post_init__(self) -> None:
+        for name, low in (("gap", 0.0), ("speed", -math.inf)):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= low):
+                raise InputError(
+                    Defect(f"must be a number, at least {low:g}", field=f"release.{name}", value=f"{value:g}")
+                )
+        if self.developed is None:
+            object.__setattr__(self, "developed", self.speed != 0)
+
+
+def excess_weight(conditions: Conditions) -> float:
+    """Gravity less buoyancy in N; raises :class:`InputError` for a sphere that does not sink."""
+    ratio = conditions.sphere.density / conditions.fluid.density
+    if not ratio > 1:
+        raise InputError(
+            Defect("is the density ratio sphere to fluid; only a sphere heavier than the fluid falls on the wall",
+                   field="sphere.density / fluid.density", value=f"{ratio:g}")
+        )  # fmt: skip
+    volume = math.pi * conditions.sphere.diameter**3 / 6
+    return (conditions.sphere.density - conditions.fluid.density) * volume * conditions.gravity
+
+
+@lru_cache(maxsize=256)
+def terminal_speed(conditions: Conditions, drag: DragLaw | None = None) -> float:
+    """The steady speed in m/s far from walls at which ``drag`` balances gravity less buoyancy."""
+    c = conditions
+    return steady(
+        drag or SchillerNaumann1935(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity
+    )
