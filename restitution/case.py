@@ -63,6 +63,8 @@ class FilmModel(Record):
     form: FilmForm = "none"
     cut_off_cells: Positive = 1.0
     floor: Positive | None = None
+    tension: Positive | None = None
+    """Tension in Pa at which the film cavitates as the sphere leaves (``cavitating_film``); else it holds."""
 
 
 ContactMode = Literal["effective", "dry", "soft_linear", "soft_hertz"]

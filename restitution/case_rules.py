@@ -64,6 +64,8 @@ def _span(case: Case) -> Iterator[Finding]:
 
 
 def _film(case: Case) -> Iterator[Finding]:
+    if case.film.tension is not None and case.film.form == "none":
+        yield "film.tension", f"{case.film.tension:g}", "needs a film that it can tear: film.form is 'none'"
     touches = case.contact is not None and case.contact.mode != "effective"
     if case.floor is None and (case.film.form != "none" or touches):
         yield "film.floor", None, "is missing, and no roughness is stated: give the gap in m at which they touch"

@@ -26,6 +26,7 @@ from restitution import laws
 from restitution.case import Case
 from restitution.errors import Defect, InputError
 from restitution.impact_speed import H_FILM
+from restitution.laws.cavitation import CavitatingFilm, film_edge
 from restitution.laws.source_abstract_eq3 import lubrication_force
 from restitution.measured_bounces import measured_restitution
 from restitution.stokes import Speed, StokesNumber
@@ -131,6 +132,9 @@ class ResolvedRun:
     def advance(self, observers: tuple = ()) -> None:
         """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed."""
         steps = _LONGEST_RUN
+        if not math.isfinite(self.gap_d):
+            self.guard(self.simulation)  # names the cell, if the flow is to blame
+            raise lbm.DivergenceError(self.simulation.steps, (0, 0, 0), "position of the sphere", self.gap_d)
         if not self.spheres.impacts:
             least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
             speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
@@ -252,16 +256,29 @@ def normal_force(case: Case, flow: FlowScales) -> Callable[[float, float, float]
         return None
     if form == "source_abstract_eq3":
 
-        def eq3(gap: float, velocity: float, onset: float) -> float:
+        def holding(gap: float, velocity: float, onset: float) -> float:
             return -float(lubrication_force(gap, -velocity, -onset, r=r, mu=mu, D0=cut_off, h_min=floor))
 
-        return eq3
-    law = laws.get(form, eps_c=cut_off / r, eps_min=floor / r)
+    else:
+        law = laws.get(form, eps_c=cut_off / r, eps_min=floor / r)
 
-    def difference(gap: float, velocity: float, onset: float) -> float:
-        return float(-6 * math.pi * mu * r * velocity * law(gap / r, out_of_range="ignore"))
+        def holding(gap: float, velocity: float, onset: float) -> float:
+            return float(-6 * math.pi * mu * r * velocity * law(gap / r, out_of_range="ignore"))
 
-    return difference
+    if case.film.tension is None:
+        return holding
+    torn, tension = CavitatingFilm(), flow.scales.lattice(case.film.tension, "pressure")
+
+    def tearing(gap: float, velocity: float, onset: float) -> float:
+        """Of the two the weaker: what the film holds, and what it does torn, less what the grid resolves."""
+        force = holding(gap, velocity, onset)
+        if velocity <= 0:
+            return force
+        eta = film_edge(mu, velocity, r, tension)
+        of_both = [float(torn(max(h, floor) / r, eta, out_of_range="ignore")) for h in (gap, cut_off)]
+        return max(force, -6 * math.pi * mu * r * velocity * max(0.0, of_both[0] - of_both[1]))
+
+    return tearing
 
 
 def _contact(case: Case, flow: FlowScales, density: float) -> Contact | None:

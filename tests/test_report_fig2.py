@@ -33,9 +33,10 @@ def keep(folder, name, e, current=True):
     key = run_key(case).stated() if current else dict.fromkeys(("key", "case_hash", "code_hash", "data_hash"), "0")
     about = key | {
         "case": name, "date": "2001-02-03", "finished": True, "seconds": 1.0, "threads": 1, "steps": 10,
-        "shape": [8, 8, 8], "step_s": 1e-5, "numbers": dict.fromkeys(("Re", "Ma", "relaxation time", "grid Re"), 1.0),
+        "shape": [8, 8, 8], "step_s": 1e-5,
+        "numbers": dict.fromkeys(("Re", "Ma", "relaxation time", "grid Re"), 1.0),
         "contacts": [
-            {"time_s": t, "speed_in_m_s": v / e, "speed_out_m_s": v} for t, v in zip(starts[:-1], speeds, strict=True)
+            {"time_s": starts[k], "speed_in_m_s": v / e, "speed_out_m_s": v} for k, v in enumerate(speeds)
         ],
     }  # fmt: skip
     x = np.linspace(-1.5, 1.5, 12)
@@ -103,15 +104,8 @@ def test_page_without_verification_says_so(report, tmp_path):
 
 def test_verification_that_is_none_is_refused(report, tmp_path, capsys):
     (tmp_path / "bad.json").write_text('{"name": 1}')
-    options = [
-        "--runs",
-        str(report / "runs"),
-        "--checks",
-        str(tmp_path / "bad.json"),
-        "--out",
-        str(tmp_path / "out"),
-    ]
-    assert main(["report", "fig2", *options]) == 2
+    places = {"--runs": report / "runs", "--checks": tmp_path / "bad.json", "--out": tmp_path / "out"}
+    assert main(["report", "fig2", *(str(word) for pair in places.items() for word in pair)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not (tmp_path / "out").exists()
 

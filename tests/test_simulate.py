@@ -176,6 +176,20 @@ def test_film_force_in_lattice_units(form, tmp_path):
     assert resolved.normal_force(case, flow)(0.5, 0.02, math.nan) < 0
 
 
+def test_a_torn_film_holds_the_tension_of_the_liquid_only(tmp_path):
+    """At contact 4 pi r p_c H_c, H_c = sqrt(3 mu r v/p_c), less 6 pi mu r^2 v/D0 that the grid resolves."""
+    path = tmp_path / "case.toml"
+    path.write_text('base = "gondret_st152_10"\n[film]\ntension = 101325.0\n[sphere]\nroughness = 1e-9\n')
+    case = case_files.read_case(path)
+    flow = scales(case)
+    force = resolved.normal_force(case, flow)
+    out = flow.scales.lattice(0.5, "velocity")
+    edge = math.sqrt(3 * 0.01 * 1.5e-3 * 0.5 / 101325)
+    by_hand = 4 * math.pi * 1.5e-3 * 101325 * edge - 6 * math.pi * 0.01 * 1.5e-3**2 * 0.5 / 3e-4
+    assert flow.scales.si(-force(1e-5, out, math.nan), "force") == pytest.approx(by_hand, rel=0.01)
+    assert force(1e-5, -out, -out) > 100 * abs(force(1e-5, out, math.nan))  # on the way in it holds
+
+
 def test_rebound_by_a_law_takes_speeds_of_the_lattice():
     """Legendre: e exp(-35/St*), St* = (7800 + 935/2) 0.585 0.003/(9 x 0.01) = 161.2."""
     case = case_files.read_case("gondret_st152_10_legendre")
