@@ -149,3 +149,17 @@ def test_a_circle_of_bases_ends(tmp_path):
     (tmp_path / "b.toml").write_text('base = "a"\n')
     with pytest.raises(InputError, match="base"):
         case_files.read_case(tmp_path / "a.toml")
+
+
+def test_the_list_names_every_shipped_case(capsys):
+    assert main(["simulate", "--list"]) == 0
+    out = capsys.readouterr().out
+    assert all(name in out for name in case_files.names())
+
+
+def test_a_template_can_be_read_again_and_replaces_nothing(tmp_path, capsys):
+    mine = tmp_path / "mine.toml"
+    assert main(["simulate", "gondret_st27", "--template", str(mine)]) == 0
+    own, shipped = case_files.read_case(mine), case_files.read_case("gondret_st27")
+    assert own.model_copy(update={"name": shipped.name}) == shipped
+    assert main(["simulate", "gondret_st27", "--template", str(mine)]) == 2
