@@ -97,15 +97,17 @@ class Spheres:
         self._free = drive is None
         self._tracks: list[list[tuple[float, ...]]] = [[] for _ in spheres]
         self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 6)) for r in self.radii]
-        self._checked = False
 
     def track(self, sphere: int = 0) -> dict[str, np.ndarray]:
         """Motion of one sphere, a row a step: :data:`COLUMNS` to arrays. ``gap`` is that to the nearest wall."""
         rows = np.array(self._tracks[sphere]).reshape(-1, len(COLUMNS))
         return {name: rows[:, i].copy() for i, name in enumerate(COLUMNS)}
 
-    def check(self, grid) -> None:
+    def prepare(self, lattice: Lattice, step: int) -> None:
         """Refuse spheres that the box cannot hold; raises :class:`InputError`."""
+        if step > 0:
+            return
+        grid = lattice.grid
         faces = np.array([grid.x_low, grid.x_high, grid.y_low, grid.y_high, grid.z_low, grid.z_high])
         for s, (r, centre) in enumerate(zip(self.radii, self.centres, strict=True)):
             if 2 * (r + REACH) > min(grid.shape):
@@ -119,13 +121,10 @@ class Spheres:
                 apart -= np.where(faces[::2] == PERIODIC, grid.shape * np.round(apart / grid.shape), 0.0)
                 if np.linalg.norm(apart) < r + self.radii[other]:
                     raise InputError(f"spheres {other} and {s} overlap")
-        self._checked = True
 
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Exchange momentum, move, refill."""
         grid, populations, parity = lattice.grid, lattice.populations, lattice.parity
-        if not self._checked:
-            self.check(grid)
         surfaces = self.centres, self.radii, self.velocities, self.spins
         for s, sums in enumerate(self._sums):
             exchange(populations, grid, parity, self.scheme, *surfaces, s, sums)

@@ -31,7 +31,7 @@ SENSITIVITY = (
     ),
     ("cells per diameter, contact (c)", ("gondret_st152_10_soft", "gondret_st152_16_soft")),
     ("width of the box", ("gondret_st152_10", "gondret_st152_10_wide")),
-    ("lattice speed", ("gondret_st152_10", "gondret_st152_10_slow")),
+    ("lattice speed", ("gondret_st152_10", "gondret_st152_10_fast")),
     ("cut-off of the film force", ("gondret_st152_10", "gondret_st152_10_cutoff2")),
 )
 """What is varied, and the cases; changes are from the first."""
