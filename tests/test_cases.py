@@ -72,9 +72,12 @@ def test_base_and_record_give_way_to_the_case(tmp_path):
     assert (case.numerics.width_d, case.numerics.cells_per_diameter) == (6.0, 10)
 
 
-def test_a_contact_replaces_that_of_the_base_as_a_whole(tmp_path):
-    case = read(tmp_path, 'base = "gondret_st152_10_soft"\n[contact]\nmode = "dry"\n')
+def test_a_section_of_another_kind_replaces_that_of_the_base(tmp_path):
+    case = read(tmp_path, 'base = "gondret_st152_10_soft"\n[contact]\nmode = "dry"\n[film]\ncut_off_cells = 2.0\n')
+    base = case_files.read_case("gondret_st152_10_soft")
     assert case.contact.duration_steps is None
+    assert case.film == base.film.model_copy(update={"cut_off_cells": 2.0})
+    assert case_files.read_case("gondret_st152_10_measured").film.tension is None
 
 
 def test_release_gap_is_the_one_the_record_states():

@@ -33,6 +33,7 @@ SENSITIVITY = (
     ("width of the box", ("gondret_st152_10", "gondret_st152_10_wide")),
     ("lattice speed", ("gondret_st152_10", "gondret_st152_10_fast")),
     ("cut-off of the film force", ("gondret_st152_10", "gondret_st152_10_cutoff2")),
+    ("cavitation of the film", ("gondret_st152_10", "gondret_st152_10_suction")),
 )
 """What is varied, and the cases; changes are from the first."""
 
