@@ -1,8 +1,8 @@
 """Where cases come from: a TOML file of the user's, or one shipped with the package, by name.
 
 A file may name a ``base``, a shipped case or a file beside it, whose keys it then replaces one by one. A section
-that says anew of which kind it is (``form`` of the film, ``mode`` of the contact, ``kind`` of the release) replaces
-that of the base as a whole, its keys depending on it.
+that says anew of which kind it is (``form`` of a film, ``mode`` of a contact, ``kind`` of a release) replaces that
+of the base as a whole, its keys depending on it.
 """
 
 from __future__ import annotations
