@@ -12,7 +12,7 @@ import numpy as np
 
 from lbm import NoSlip, Rates, Simulation
 from lbm.contact import DryRebound
-from lbm.film import Film
+from lbm.film import RESOLVED, Film, lost_to_grid
 from lbm.spheres import Sphere, Spheres
 from lbm.wall_motion import FRACTION
 
@@ -209,16 +209,14 @@ def shear(diameter: float, *, width=5.0, height=6.0, rate=2e-5, viscosity=1 / 6,
     return Shear(rate * diameter**2 / viscosity, 2 * found[0] / rate, found[1] / unit)
 
 
-def film(radius: float, viscosity: float, cut_off: float, law=None, floor: float = 1e-3) -> Film:
-    """Film of the force lambda(h) - lambda(cut_off), by default with lambda = a/h."""
-    law = law or (lambda eps: 1 / eps)
-    resolved = law(cut_off / radius)
-    unit = 6 * math.pi * viscosity * radius
+def film(radius: float, viscosity: float, floor: float = 1e-3) -> Film:
+    """Film of what the grid lacks of Taylor's lubrication force."""
+    unit = 6 * math.pi * viscosity * radius**2
 
     def normal(gap, velocity, onset):
-        return -unit * velocity * (law(gap / radius) - resolved)
+        return -unit * velocity * lost_to_grid(gap)
 
-    return Film(cut_off, floor, normal)
+    return Film(RESOLVED, floor, normal)
 
 
 @dataclass(frozen=True)
@@ -235,7 +233,7 @@ def settling(
 ) -> Settling:
     """Sphere released in a closed box of 100 x 100 x 160 mm, 120 mm above its floor (ten Cate et al. 2002).
 
-    ``speed`` in lattice units stands for ``terminal`` in m/s. The film is the 1/h difference below 1 cell.
+    ``speed`` in lattice units stands for ``terminal`` in m/s.
     """
     fluid, sphere = conditions.fluid, conditions.sphere
     dx = sphere.diameter / diameter
@@ -249,7 +247,7 @@ def settling(
     ball = Spheres(
         [Sphere(radius, sphere.density / fluid.density, (shape[0] / 2, shape[1] / 2, 0.12 / dx + radius))],
         gravity=(0.0, 0.0, -conditions.gravity * dt**2 / dx),
-        film=film(radius, viscosity, 1.0),
+        film=film(radius, viscosity),
         contact=DryRebound(0.5, 2 / 3 * math.pi * radius**3),
     )
     flow.passes.append(ball)
@@ -271,7 +269,7 @@ def rebound(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Gap in diameters over steps of a sphere that is brought to ``speed`` and left to bounce off a wall.
 
-    St = (rho_p/rho_f) U d/(9 nu). The film is the 1/h difference below 1 cell, the contact dry with e = 0.97 at
+    St = (rho_p/rho_f) U d/(9 nu). The film is what the grid lacks, the contact dry with e = 0.97 at
     1e-3 radii; gravity is what gives the rebound height of a diameter without fluid.
     """
     radius = diameter / 2
@@ -288,7 +286,7 @@ def rebound(
     ball = Spheres(
         [Sphere(radius, ratio, centre)],
         gravity=(0.0, 0.0, -(speed**2) / (2 * diameter)),
-        film=film(radius, viscosity, 1.0, floor=1e-3 * radius),
+        film=film(radius, viscosity, floor=1e-3 * radius),
         contact=DryRebound(0.97, 2 / 3 * math.pi * radius**3),
         drive=drive,
         fraction=fraction,

@@ -7,10 +7,13 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from benchmarks import sphere_flows as flows
 from lbm import Rates, Simulation
+from lbm.film import RESOLVED, lost_to_grid
 from lbm.spheres import Sphere, Spheres
+from lbm.wall_motion import FRACTION
 from restitution import datasets
 from restitution.laws.brenner_1961 import Brenner1961
 
@@ -33,8 +36,6 @@ def test_resistance_towards_a_wall_is_brenners():
     exact = Brenner1961()(eps=run.gap / run.radius)
     resolved = (run.gap > 1.9) & (run.gap < 2.1)
     assert (run.resistance / exact)[resolved].mean() == pytest.approx(1, abs=0.06)
-    below = run.gap < 0.1
-    assert (run.resistance / exact)[below].mean() < 0.5  # which is why there is a film to add
 
 
 @pytest.mark.parametrize("direction", [(1, 0, 0), (1, 0.62, 0.37)])
@@ -77,7 +78,6 @@ def test_light_and_heavy_spheres_fall_without_oscillation(ratio):
 
 
 def test_sub_steps_and_place_of_contact_do_not_decide_the_rebound():
-    from lbm.wall_motion import FRACTION
 
     def e(**options):
         gap, velocity = flows.rebound(8, width=3, start=1.2, **options)
@@ -156,3 +156,22 @@ def test_a_sphere_at_rest_in_fluid_at_rest_feels_nothing():
     flow.run(20)
     assert not ball.forces.any()
     assert not ball.torques.any()
+
+
+@pytest.mark.parametrize("gap", [0.01, 0.024, 0.026, 0.2, 0.499])
+def test_what_the_grid_lacks_of_a_film_is_the_integral_of_its_pressure(gap):
+    c = RESOLVED
+    share, _ = quad(lambda H: 2 * (H - c) ** 2 / ((H - gap) * H**3), c, math.inf, epsabs=1e-12)
+    assert lost_to_grid(gap) == pytest.approx(1 / gap - share, rel=1e-9)
+
+
+def test_film_and_lattice_together_are_brenners_resistance():
+    """Half of the resistance and more is the film's; nothing in it is fitted."""
+    run = flows.approach(10, width=4, height=3, start=0.25, speed=2e-3, dtype="float32")
+    below = (run.gap < 0.5) & (run.gap > 0.05)
+    gap = run.gap[below]
+    film = run.radius * np.array([lost_to_grid(h) for h in gap])
+    ratio = (run.resistance[below] + film) / Brenner1961()(eps=gap / run.radius)
+    assert ratio.min() > 0.9
+    assert ratio.max() < 1.02
+    assert ratio[gap < 0.2].mean() == pytest.approx(1, abs=0.04)
