@@ -1,0 +1,5 @@
+"""``restitution compare``."""
+
+
+def add_parser(commands):
+    pass

@@ -1,0 +1,5 @@
+"""``restitution design``."""
+
+
+def add_parser(commands):
+    pass

@@ -1,0 +1,5 @@
+"""``restitution predict``."""
+
+
+def add_parser(commands):
+    pass
