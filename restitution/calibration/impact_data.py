@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution import datasets
+from restitution.calibration.digitizer import PIXEL, is_export, read_export
 from restitution.calibration.observations import Observations, join
 from restitution.conditions import Conditions, Fluid, Sphere
 from restitution.errors import Defect, InputError
@@ -61,6 +62,9 @@ def _read_one(path: str, how: Reading) -> Observations:
             conditions = how.conditions or resource.conditions
             return from_track(datasets.load_track(path), conditions, how, path, digest)
         raise InputError(Defect("does not exist, and no shipped record has this name", path))
+    if is_export(path):
+        digest = hashlib.sha256(Path(path).read_bytes()).hexdigest()
+        return from_digitised(path, how, digest)
     header = {how.columns.get(name, name) for name in ("time_s", "gap_m", "velocity_m_s")} & set(read_header(path))
     digest = hashlib.sha256(Path(path).read_bytes()).hexdigest()
     if len(header) == 2 and how.columns.get("time_s", "time_s") in header:
@@ -84,6 +88,20 @@ def _track_file(path: str, how: Reading, digest: str) -> Observations:
     mapped = {name: columns.get(name, name) for name in ("time_s", value)}
     track = Track.from_table(read_table(path, schema, mapped))
     return from_track(track, conditions, how, path, digest)
+
+
+def from_digitised(path: str, how: Reading, digest: str) -> Observations:
+    """The points of a digitised plot, each data set a source."""
+    columns = read_schema(SCHEMA).columns
+    for option, name in zip(("--x", "--y"), how.axes, strict=True):
+        if name not in columns:
+            rule = f"is not a column that a fit uses; known: {', '.join(columns)}"
+            raise InputError(Defect(rule, None, None, option, name))
+    found = from_table(read_export(path, how.axes), how, path, digest)
+    if not path.endswith(".json"):
+        return found
+    note = f"{path}: errors are those of a click, {PIXEL:g} pixel; those of the measurement are in the scatter"
+    return replace(found, notes=(*found.notes, note))
 
 
 def _conditions_of_track(path: str) -> Conditions:

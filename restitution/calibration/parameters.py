@@ -98,7 +98,7 @@ class Parameter:
     def outward(self, x: float) -> float:
         """The value at an internal coordinate."""
         if self.scale == "log":
-            return math.exp(x)
+            return min(max(math.exp(x), self.bounds[0]), self.bounds[1])  # not beyond them by rounding
         return abs(x) if self.scale == "even" else x
 
     def slope(self, x: float) -> float:

@@ -145,22 +145,26 @@ def reading_of(args: argparse.Namespace) -> Reading:
     )
 
 
-def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None) -> Plan:
-    """What is estimated, from the options."""
+def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, strict: bool = True) -> Plan:
+    """What is estimated, from the options; without ``strict`` those that the law does not know are left out."""
     from restitution.calibration.fitting import Plan
     from restitution.calibration.rebound_model import model_of
 
     bounds = dict(args.bounds)
     model = model_of(law, bounds, law_stokes)
-    known = {p.name for p in model.parameters}
+    known = {p.name for p in model.parameters} | {"e_dry"}
+
+    def own(given: dict) -> dict:
+        return given if strict else {name: value for name, value in given.items() if name in known}
+
     return Plan(
         model=model,
-        fixed=dict(args.fix),
-        free=frozenset(args.free),
-        bounds=bounds if known else {},
-        priors={name: _normal(name, *value) for name, value in args.prior},
+        fixed=own(dict(args.fix)),
+        free=frozenset(own(dict.fromkeys(args.free))),
+        bounds=own(bounds),
+        priors=own({name: _normal(name, *value) for name, value in args.prior}),
         e_dry=_e_dry(args.e_dry),
-        separate=dict(args.separate),
+        separate=own(dict(args.separate)),
         scatter=not args.no_scatter,
         offsets={"auto": None, "none": False, "source": True}[args.offsets],
         robust=args.robust,
