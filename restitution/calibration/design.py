@@ -88,7 +88,7 @@ class Design:
         stokes_sigma: float | None = None,
         same_source: bool = False,
     ):
-        """``e_sigma`` and ``stokes_sigma`` (relative) of a new impact; those typical of the fit's own by default."""
+        """``e_sigma`` and ``stokes_sigma`` (relative) of a new impact; by default those typical of the fit."""
         self.result, self.e_dry = result, e_dry
         self.law = Evaluation(result, e_dry, conditions)
         if not self.law.names:

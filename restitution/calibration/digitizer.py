@@ -1,12 +1,12 @@
-"""Points read from a published plot by WebPlotDigitizer: its CSV export, or its JSON project with axis calibration.
+"""Points of a plot read by WebPlotDigitizer: its CSV export, or its JSON project with axis calibration.
 
 The project has the pixels of every point and of four calibration points, X1 and X2 with known x, Y1 and Y2 with
 known y. A pixel p is s along a = X2 - X1 and t along b = Y2 - Y1,
 
     p - X1 = s a + t b,   x = x_1 + s (x_2 - x_1);      p - Y1 = s' a + t' b,   y = y_1 + t' (y_2 - y_1),
 
-in the logarithm where the axis is logarithmic. The values are computed from the pixels, not taken from the file, and
-get the error of a click: one pixel. The CSV export has values alone, so their errors must come from elsewhere.
+in the logarithm where the axis is logarithmic. The values are computed from the pixels, not taken from the file,
+and get the error of a click: one pixel. The CSV export has values alone, so their errors come from elsewhere.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class _Project(_Part):
 
 
 def is_export(path: str | Path) -> bool:
-    """Whether a file is an export: a JSON project, or a CSV file without column names or with X and Y under names."""
+    """Whether a file is an export: JSON, or CSV of two columns without names, or with X and Y under names."""
     if str(path).endswith(".json"):
         return True
     rows = _cells(path)[:2]

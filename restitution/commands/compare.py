@@ -121,8 +121,6 @@ def _show(ranking: Ranking) -> None:
         show(f"the data support {contenders[0]} over all others")
     for s in ranking.scores:
         if s.check < 0.05:
-            show(
-                f"note: {s.label} has not the shape of the data (neighbours in St deviate alike, p = {s.check:.3f})"
-            )
+            show(f"note: {s.label} lacks the shape of the data: neighbours in St deviate alike, p = {s.check:.3f}")
     for label, reason in ranking.failed.items():
         show(f"left out: {label}: {reason}")
