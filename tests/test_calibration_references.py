@@ -180,4 +180,6 @@ def test_predictive_density_of_what_was_left_out():
     for out in (np.arange(12) == 4, np.arange(12) % 2 == 0):
         inside = fit.likelihood.of(o.take(~out))
         expected = inside(known.values) - fit.likelihood(known.values)
-        assert predictive(dataclasses.replace(fit, likelihood=inside), fit.likelihood, out) == pytest.approx(expected)
+        assert predictive(dataclasses.replace(fit, likelihood=inside), fit.likelihood, out) == pytest.approx(
+            expected
+        )

@@ -195,6 +195,8 @@ def estimate(
     parameters = likelihood.parameters
     warm = start is not None
     start = start if warm else _first_guess(likelihood)
+    if not warm:
+        _check_flat(likelihood, start)
     restriction = None
     if restricted and any(not p.mean for p in parameters):
         plain = maximise(likelihood, parameters, start, covariance=False)
@@ -211,7 +213,7 @@ def estimate(
         return Fit(plan, likelihood, found, freedom, restriction is not None, ())
     found = maximise(function, parameters, start)
     mean = np.array([p.mean for p in parameters], bool)
-    _check_flat(likelihood, found)
+    _check_bounds(found)
     if restriction is not None:
         freedom[mean] = restriction.degrees_of_freedom(found.values)
     rises = Thresholds({level: [threshold(level, nu) for nu in freedom] for level in LEVELS})
@@ -268,10 +270,9 @@ def _first_guess(likelihood: Likelihood) -> NDArray:
     return values
 
 
-def _check_flat(likelihood: Likelihood, found: Maximum) -> None:
-    """Refuse an estimate along whose parameters the likelihood does not fall, and one stuck on a bound."""
-    parameters = found.parameters
-    for j, p in enumerate(parameters):
+def _check_bounds(found: Maximum) -> None:
+    """Refuse an estimate stuck on a bound; e_dry may lie at 1, and a prior may hold a parameter anywhere."""
+    for j, p in enumerate(found.parameters):
         side = found.at_bound(j) if p.mean else None
         if side and not p.name.startswith("e_dry") and not isinstance(p.prior, Normal):
             low, high = p.bounds
@@ -280,14 +281,19 @@ def _check_flat(likelihood: Likelihood, found: Maximum) -> None:
                 f"widen it (--bounds {p.name}=LOW:HIGH), fix it, or fit another law"
             )
             raise InputError(Defect(rule, None, None, p.name, f"{found.values[j]:.4g}"))
+
+
+def _check_flat(likelihood: Likelihood, values: NDArray) -> None:
+    """Refuse a likelihood that does not depend on a parameter, or only on a combination of several."""
+    parameters = likelihood.parameters
     mean = np.flatnonzero([p.mean for p in parameters])
-    J = likelihood.jacobian(found.values)[:, mean]
+    J = likelihood.jacobian(values)[:, mean]
     for place, j in enumerate(mean):
         p = parameters[j]
-        reach = (p.bounds[1] - p.bounds[0]) if p.scale == "linear" else found.values[j]
+        reach = (p.bounds[1] - p.bounds[0]) if p.scale == "linear" else values[j]
         if isinstance(p.prior, Flat) and np.max(np.abs(J[:, place])) * reach < 1e-9:
             rule = "the likelihood does not depend on it here: it is flat; fix it, or choose another start or law"
-            raise InputError(Defect(rule, None, None, p.name, f"{found.values[j]:.4g}"))
+            raise InputError(Defect(rule, None, None, p.name, f"{values[j]:.4g}"))
     size = np.sqrt(np.sum(J**2, axis=0))
     free = [i for i, j in enumerate(mean) if isinstance(parameters[j].prior, Flat)]
     if len(free) > 1:
@@ -295,9 +301,7 @@ def _check_flat(likelihood: Likelihood, found: Maximum) -> None:
         if singular[-1] < 1e-5 * singular[0]:
             part = np.abs(directions[-1])
             names = " and ".join(parameters[mean[free[i]]].name for i in np.flatnonzero(part > 0.1))
-            rule = (
-                "the likelihood is flat along a combination of them: only that combination is determined; fix one"
-            )
+            rule = "the likelihood is flat along a combination of them: only that is determined; fix one"
             raise InputError(Defect(rule, field=names))
 
 

@@ -244,7 +244,7 @@ def _stokes(
     table: pd.DataFrame, how: Reading, conditions: list, file: str, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, str]:
     """St and its error as the table gives them, or from the impact speed and the conditions."""
-    St, sigma = table["stokes"].to_numpy(float), table["stokes_sigma"].to_numpy(float)
+    St, sigma = table["stokes"].to_numpy(float).copy(), table["stokes_sigma"].to_numpy(float).copy()
     given = np.isfinite(St)
     key = _one(table, "stokes_convention", how.stokes, "--stokes", file, rows)
     if given.any() and key is None:
