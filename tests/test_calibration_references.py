@@ -122,33 +122,33 @@ def test_parameters_are_recovered_as_noise_vanishes(name):
 
 @pytest.mark.parametrize("robust", [False, True])
 def test_offset_and_limits_against_numerical_integration(robust):
-    """The marginal likelihood of three sources, with limits, each integral over the offset by adaptive quadrature."""
+    """The marginal likelihood of three sources, with limits, by adaptive quadrature over each offset."""
     rng = np.random.default_rng(5)
     o = draw(18, rng, scatter=0.03, limit=0.15, offset=0.05)
     o = dataclasses.replace(o, labels={"source": np.array([f"s{i % 3}" for i in range(18)], object)})
     assert o.censored.any()
     likelihood = plan(robust=robust).likelihood(o)
+    one = stats.t(STUDENT) if robust else stats.norm()
     for tau, omega in ((0.03, 0.05), (0.01, 0.2), (0.1, 0.001)):
         values = np.array([17.0, 0.92, tau, omega])
         f, variance, _ = likelihood.moments(values)
-        s = np.sqrt(variance)
-        one = stats.t(STUDENT) if robust else stats.norm()
-        total = 0.0
-        for source in range(3):
-            here = likelihood.sources == source
-
-            def density(b, here=here):
-                z = (o.e - f - b)[here] / s[here]
-                below = one.cdf(((o.upper - f - b)[here] / s[here]))
-                each = np.where(o.censored[here], below, one.pdf(z) / s[here])
-                return np.prod(each) * stats.norm.pdf(b, scale=omega)
-
-            grid = np.linspace(-1, 1, 400_001) if omega > 0.01 else np.linspace(-0.02, 0.02, 4001)
-            peak = grid[np.argmax([density(b) for b in grid[:: len(grid) // 2000]]) * (len(grid) // 2000)]
-            reach = min(8 * omega, 0.5)
-            value = integrate.quad(density, peak - reach, peak + reach, points=[peak], limit=400, epsabs=0)[0]
-            total += np.log(value)
+        each = [np.flatnonzero(likelihood.sources == source) for source in range(3)]
+        total = sum(np.log(_marginal(o, f, np.sqrt(variance), here, omega, one)) for here in each)
         assert -likelihood(values) == pytest.approx(total, abs=1e-6)
+
+
+def _marginal(o, f, s, here, omega, one):
+    """Integral over the offset of one source of the densities of its impacts and the normal of the offset."""
+
+    def density(b):
+        below = one.cdf((o.upper - f - b)[here] / s[here])
+        at = one.pdf((o.e - f - b)[here] / s[here]) / s[here]
+        return np.prod(np.where(o.censored[here], below, at)) * stats.norm.pdf(b, scale=omega)
+
+    grid = np.linspace(-6 * omega, 6 * omega, 2001)
+    peak = grid[np.argmax([density(b) for b in grid])]
+    reach = min(8 * omega, 0.5)
+    return integrate.quad(density, peak - reach, peak + reach, points=[peak], limit=400, epsabs=0)[0]
 
 
 def test_student_intervals_of_a_straight_line():

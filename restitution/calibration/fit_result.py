@@ -57,8 +57,11 @@ class Point(Record):
     file: str | None
     row: int | None
     source: str
+    levels: dict[str, str]
+    """Of the labels that parameters are separate by."""
     stokes: float
     stokes_sigma: float
+    e_dry: float | None
     e_eff: float | None
     e_eff_sigma: float
     e_eff_upper: float | None
@@ -111,6 +114,8 @@ class FitResult(Record):
     """Of each source: mean and standard deviation."""
     goodness: Goodness
     stokes_range: tuple[float, float]
+    law_stokes_ratio: tuple[float, float]
+    """Least and greatest ratio of the law's Stokes number to that of the data."""
     e_dry_range: tuple[float, float]
     robust: bool
     points: tuple[Point, ...]
@@ -188,7 +193,9 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         for j, p in enumerate(found.parameters)
     )
     fixed = {name: float(v) for name, v in likelihood.fixed.items() if np.ndim(v) == 0}
-    e_dry = o.e_dry[np.isfinite(o.e_dry)]
+    e_dry, ratio = o.e_dry[np.isfinite(o.e_dry)], o.ratio_to(model.convention)
+    # A limit above the dry restitution tells nothing, so it calibrates nothing.
+    told = ~o.censored | (o.upper < np.where(np.isfinite(o.e_dry), o.e_dry, 1.0))
     return FitResult(
         law=LawRecord(
             name=model.name if named else None,
@@ -205,7 +212,8 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         covariance=tuple(tuple(_number(x) for x in row) for row in found.covariance),
         offsets=likelihood.offsets(found.values) if OFFSET in [p.name for p in found.parameters] else {},
         goodness=_goodness(fit),
-        stokes_range=(float(o.St.min()), float(o.St.max())),
+        stokes_range=(float(o.St[told].min()), float(o.St[told].max())),
+        law_stokes_ratio=(float(ratio.min()), float(ratio.max())),
         e_dry_range=(float(e_dry.min()), float(e_dry.max())) if len(e_dry) else (0.0, 1.0),
         robust=likelihood.robust,
         points=_points(fit),
@@ -232,8 +240,10 @@ def _points(fit: Fit) -> tuple[Point, ...]:
                 file=file,
                 row=row,
                 source=source,
+                levels={label: str(o.labels[label][i]) for label in dict.fromkeys(likelihood.separate.values())},
                 stokes=float(o.St[i]),
                 stokes_sigma=float(o.St_sigma[i]),
+                e_dry=_number(o.e_dry[i]),
                 e_eff=float(o.e[i]) if seen else None,
                 e_eff_sigma=float(o.e_sigma[i]),
                 e_eff_upper=None if seen else float(o.upper[i]),
@@ -292,7 +302,8 @@ def describe(result: FitResult) -> list[tuple[str, str]]:
         words = ", ".join(f"{level} {_interval(p, level)}" for level in p.intervals)
         prior = f"; prior {p.prior}" if p.prior.startswith("normal") else ""
         value = 0.0 if not p.mean and p.value < 1e-3 * p.intervals["95%"][1] else p.value  # zero but for rounding
-        facts.append((p.name, f"{value:.5g}{unit} +- {_sigma(p)} ({words}{prior})"))
+        error = f" +- {_sigma(p)}" if p.mean else ""  # of a standard deviation near zero it would mislead
+        facts.append((p.name, f"{value:.5g}{unit}{error} ({words}{prior})"))
     for name, (mean, sigma) in result.offsets.items():
         facts.append(("offset", f"{name}: {mean:+.3f} +- {sigma:.3f}"))
     if g.chi_square is not None:

@@ -187,29 +187,33 @@ def estimate(
     observations: Observations,
     intervals: bool = True,
     restricted: bool = True,
-    start: NDArray | None = None,
+    near: Maximum | None = None,
     covariance: bool = True,
 ) -> Fit:
-    """Maximum (restricted) likelihood. ``restricted=False`` gives the plain maximum, whose value ranks laws."""
+    """Maximum (restricted) likelihood. ``restricted=False`` gives the plain maximum, whose value ranks laws.
+
+    ``near`` is the estimate of a similar fit with the same parameters, to start from.
+    """
     likelihood = plan.likelihood(observations)
     parameters = likelihood.parameters
-    warm = start is not None
-    start = start if warm else _first_guess(likelihood)
+    warm = near is not None
+    start, steps = (near.values, near.sigma) if warm else (_first_guess(likelihood), None)
     if not warm:
         _check_flat(likelihood, start)
     restriction = None
     if restricted and any(not p.mean for p in parameters):
-        plain = maximise(likelihood, parameters, start, covariance=False)
-        restriction = Restriction.at(likelihood, plain.values)
-        start = np.maximum(plain.values, [0.0 if p.mean else 1e-3 for p in parameters])
-        start = np.where([p.mean for p in parameters], plain.values, start)
+        if not warm:
+            start = maximise(likelihood, parameters, start, covariance=False).values
+        restriction = Restriction.at(likelihood, start)
+        # Zero is a stationary point of a standard deviation: the search must not begin there.
+        start = np.where([p.mean for p in parameters], start, np.maximum(start, 1e-3))
 
     def function(values: NDArray) -> float:
         return likelihood(values) + (restriction(values) if restriction else 0.0)
 
     freedom = np.full(len(parameters), np.inf)
     if not intervals:
-        found = maximise(function, parameters, start, covariance=covariance)
+        found = maximise(function, parameters, start, covariance=covariance, steps=steps)
         return Fit(plan, likelihood, found, freedom, restriction is not None, ())
     found = maximise(function, parameters, start)
     mean = np.array([p.mean for p in parameters], bool)

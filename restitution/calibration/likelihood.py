@@ -70,7 +70,8 @@ class Likelihood:
         r, v, source = (self.observations.e - f)[seen], variance[seen], self.sources[seen]
         z = (self.observations.upper - f)[~seen]
         if omega == 0:
-            return -float(self._log_density(r, v).sum() + self._log_below(z, variance[~seen]).sum())
+            below = self._log_below(z, variance[~seen]).sum() if len(z) else 0.0
+            return -float(self._log_density(r, v).sum() + below)
         if self.robust:
             return -sum(self._by_quadrature(s, r, v, z, variance[~seen], omega) for s in range(self._n_sources))
         result = -float(self._log_density(r, v).sum())

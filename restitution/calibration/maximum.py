@@ -63,10 +63,12 @@ def maximise(
     start: NDArray | None = None,
     thresholds: Thresholds | None = None,
     covariance: bool = True,
+    steps: NDArray | None = None,
 ) -> Maximum:
     """The maximum within the bounds; with ``thresholds`` also the intervals of the profile.
 
-    Raises :class:`InputError` where the likelihood is infinite at the start, or no maximum is found.
+    ``steps`` are first steps of the search in the values, as the standard errors of a similar fit. Raises
+    :class:`InputError` where the likelihood is infinite at the start, or no maximum is found.
     """
     from iminuit import Minuit
 
@@ -90,9 +92,10 @@ def maximise(
     minuit = Minuit(function, first, name=[p.name for p in parameters])
     minuit.errordef = Minuit.LIKELIHOOD
     minuit.print_level = 0
-    for p, x in zip(parameters, first, strict=True):
+    for j, (p, x) in enumerate(zip(parameters, first, strict=True)):
         minuit.limits[p.name] = p.limits
-        minuit.errors[p.name] = _step(p, x)
+        known = steps is not None and np.isfinite(steps[j]) and steps[j] > 0
+        minuit.errors[p.name] = steps[j] / abs(p.slope(x)) if known else _step(p, x)
     minuit.migrad()
     if not minuit.valid:
         minuit.simplex()

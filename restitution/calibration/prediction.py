@@ -102,8 +102,7 @@ class Evaluation:
         whole = np.array([[np.nan if x is None else x for x in row] for row in result.covariance])
         self.covariance = whole[np.ix_(index, index)] if index else np.zeros((0, 0))
         self.freedom = min((p.degrees_of_freedom or np.inf for p in used), default=np.inf)
-        own = StokesNumber(1.0, result.stokes_convention).to(self.model.convention, conditions)
-        self.ratio = own.value
+        self.ratio = _ratio(result, self.model.convention, conditions)
 
     def __call__(self, St: NDArray, values: NDArray) -> NDArray:
         """F at St of the data's convention."""
@@ -135,6 +134,14 @@ class Evaluation:
 
         half = 0.5 * (1 + level)
         return float(norm.ppf(half) if np.isinf(self.freedom) else t.ppf(half, self.freedom))
+
+
+def _ratio(result: FitResult, convention: str, conditions: Conditions | None) -> float:
+    """The law's Stokes number over that of the data: by the conditions, or as it was for all fitted impacts."""
+    low, high = result.law_stokes_ratio
+    if conditions is None and high - low < 1e-9 * high:
+        return low
+    return StokesNumber(1.0, result.stokes_convention).to(convention, conditions).value
 
 
 def _normal(value: NDArray, sigma: NDArray, quantile: float) -> NDArray:

@@ -103,7 +103,7 @@ def rank(
 def score(label: str, plan: Plan, observations: Observations, seed: int = 0) -> Score:
     """One law's scores."""
     fit = estimate(plan, observations)
-    plain = estimate(plan, observations, False, False, fit.maximum.values, covariance=False)
+    plain = estimate(plan, observations, False, False, fit.maximum, covariance=False)
     k, n = len(fit.maximum.parameters), len(observations)
     log_likelihood = -plain.maximum.negative_log
     sources = fit.likelihood.sources
@@ -120,8 +120,9 @@ def _left_out(plan: Plan, whole: Fit, out: NDArray) -> float:
     # Whether sources are offset is a property of the model, not of what is left out.
     names = [p.name for p in whole.maximum.parameters]
     plan = replace(plan, offsets=OFFSET in names)
-    start = whole.maximum.values if len(plan.likelihood(rest).parameters) == len(names) else None
-    fit = estimate(plan, rest, intervals=False, start=start)
+    # A level of a separate parameter may be gone with what is left out.
+    near = whole.maximum if len(plan.likelihood(rest).parameters) == len(names) else None
+    fit = estimate(plan, rest, intervals=False, near=near)
     return predictive(fit, whole.likelihood, out)
 
 

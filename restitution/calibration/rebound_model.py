@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -76,15 +77,21 @@ class LawModel:
     def chosen(self) -> frozenset[str]:
         return frozenset(f.name for f in self.law.parameter_fields() if f.metadata["chosen"])
 
+    @cached_property
+    def _compiled(self) -> tuple[tuple[str, ...], Any, Any]:
+        """Names of the parameters, and the compiled value and slope."""
+        names = tuple(f.name for f in self.law.parameter_fields())
+        symbols = (*self.law.variables, *names)
+        return names, *(compiled_formula(self.law.formula, symbols, wrt) for wrt in (None, "St"))
+
     def __call__(self, St: NDArray, e_dry: Any, values: Mapping[str, Any]) -> tuple[NDArray, NDArray]:
         """F and df/dSt in the law's own St. Outside the parameters' bounds it is the caller's affair."""
         if self.law.formula is None:
             return self._by_level(St, e_dry, values)
-        arguments = (St, e_dry, *(values[f.name] for f in self.law.parameter_fields()))
-        symbols = self.law._symbols
+        names, value_of, slope_of = self._compiled
+        arguments = (St, e_dry, *(values[name] for name in names))
         with np.errstate(all="ignore"):
-            value = compiled_formula(self.law.formula, symbols, None)(*arguments)
-            slope = compiled_formula(self.law.formula, symbols, "St")(*arguments)
+            value, slope = value_of(*arguments), slope_of(*arguments)
         return _shaped(value, St), _shaped(slope, St)
 
     def _by_level(self, St: NDArray, e_dry: Any, values: Mapping[str, Any]) -> tuple[NDArray, NDArray]:

@@ -8,6 +8,7 @@ stay below 0.1 d. All three definitions are tabulated, since the choice moves e_
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from restitution.conditions import Conditions
+    from restitution.report.fig1_verdict import Judgement
 
 SPEED = Speed.CONTACT
 SIMULATED_BY_ABSTRACT = "gondret2002_st152"
@@ -37,35 +39,50 @@ class Fig1:
     scores: pd.DataFrame
     conditions: dict[str, Conditions]
     notes: list[str]
+    judgements: list[Judgement]
 
     @property
     def measured(self) -> pd.DataFrame:
         return self.impacts[self.impacts.kind == "measured"]
 
+    def judgement(self, speed: Speed) -> Judgement:
+        """What the rebounds support under one definition of speed."""
+        return next(j for j in self.judgements if j.definition == str(speed))
+
 
 def gather(speed: Speed = SPEED) -> Fig1:
     """Impacts of all shipped trajectories that have any, and the scores of the laws against the measured ones."""
+    every, scores, conditions, notes, judgements = _everything()
+    impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
+    return Fig1(impacts, every, scores, conditions, notes[str(speed)], judgements)
+
+
+@cache
+def _everything() -> tuple:
+    """What does not depend on the definition of speed that the figure takes: shipped data do not change."""
     import pandas as pd
+
+    from restitution.report.fig1_verdict import judge
 
     resources = [r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory"]
     resources = [r for r in resources if r.conditions.sphere.e_dry is not None]
     conditions = {r.name: r.conditions for r in resources}
     known = [laws.get(name) for name in (*EQ4_READINGS, *OTHERS)]
-    tables, scores, notes = [], [], []
+    tables, scores, notes = [], [], {}
     for definition in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
         rows: list[dict] = []
+        notes[str(definition)] = []
         for r in resources:
             found = find_impacts(datasets.load_track(r.name), r.conditions, definition, "st", r.name, r.kind)
             rows += [row | _provenance(r) for row in found.rows]
-            if definition == speed:
-                notes += [f"{r.name}: {note}" for note in found.notes]
+            notes[str(definition)] += [f"{r.name}: {note}" for note in found.notes]
         columns = [*datasets.schema("impact").columns, *_provenance(resources[0])]
         tables.append(pd.DataFrame(rows, columns=columns))
         measured = tables[-1][tables[-1].kind == "measured"]
         scores.append(comparison.score(known, measured, conditions).assign(speed_definition=str(definition)))
     every = pd.concat(tables, ignore_index=True)
-    impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
-    return Fig1(impacts, every, pd.concat(scores, ignore_index=True), conditions, notes)
+    judgements = judge(every, conditions, (*EQ4_READINGS, *OTHERS))
+    return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements
 
 
 def _provenance(r: datasets.Resource) -> dict[str, object]:
@@ -82,7 +99,7 @@ def _provenance(r: datasets.Resource) -> dict[str, object]:
 
 def write(folder: str | Path, speed: Speed = SPEED) -> list[str]:
     """Write the report into ``folder``; returns the names of the files. The same input gives the same bytes."""
-    from restitution.report import fig1_page, fig1_plot
+    from restitution.report import fig1_page, fig1_plot, fig1_verdict
 
     fig1 = gather(speed)
     drawing = fig1_plot.draw(fig1, speed)
@@ -92,6 +109,7 @@ def write(folder: str | Path, speed: Speed = SPEED) -> list[str]:
         "impacts.csv": _csv(fig1.impacts),
         "impacts_by_speed.csv": _csv(fig1.every),
         "laws.csv": _csv(fig1.scores),
+        "readings.csv": _rounded(fig1_verdict.table(fig1.judgements)),
         "index.html": fig1_page.render(fig1, speed, drawing.svg),
     }
     write_folder(folder, files)
@@ -101,3 +119,10 @@ def write(folder: str | Path, speed: Speed = SPEED) -> list[str]:
 def _csv(table: pd.DataFrame) -> str:
     # Five digits: the sixth may depend on the machine's arithmetic.
     return table.to_csv(index=False, float_format="%.5g", lineterminator="\n")
+
+
+def _rounded(rows: list[dict]) -> str:
+    """Scores of fits to the digits that a search for a maximum gives on any machine."""
+    import pandas as pd
+
+    return pd.DataFrame(rows).to_csv(index=False, float_format="%.2f", lineterminator="\n")
