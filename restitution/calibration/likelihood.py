@@ -79,10 +79,17 @@ class Likelihood:
         S = np.bincount(source, r / v, self._n_sources)
         shrink = omega**2 / (1 + omega**2 * W)
         result += float(np.sum(0.5 * np.log1p(omega**2 * W) - 0.5 * shrink * S**2))
-        for s in np.unique(self.sources[~seen]):
-            here = self.sources[~seen] == s
+        if not len(z):
+            return result
+        limited, v_z = self.sources[~seen], variance[~seen]
+        alone = np.bincount(limited, minlength=self._n_sources)[limited] == 1
+        # One limit in its source: the average of Phi over a normal offset is Phi again.
+        s = limited[alone]
+        result -= float(log_ndtr((z[alone] - shrink[s] * S[s]) / np.sqrt(v_z[alone] + shrink[s])).sum())
+        for s in dict.fromkeys(limited[~alone]):
+            here = limited == s
             offset = shrink[s] * S[s] + np.sqrt(shrink[s]) * _NODES[:, None]
-            below = log_ndtr((z[here] - offset) / np.sqrt(variance[~seen][here])).sum(axis=1)
+            below = log_ndtr((z[here] - offset) / np.sqrt(v_z[here])).sum(axis=1)
             result -= float(logsumexp(below - 0.5 * _NODES**2) - _LOG_WEIGHT)
         return result
 

@@ -121,7 +121,7 @@ def _left_out(plan: Plan, whole: Fit, out: NDArray) -> float:
     names = [p.name for p in whole.maximum.parameters]
     plan = replace(plan, offsets=OFFSET in names)
     # A level of a separate parameter may be gone with what is left out.
-    near = whole.maximum if len(plan.likelihood(rest).parameters) == len(names) else None
+    near = whole.maximum if not plan.separate or len(plan.likelihood(rest).parameters) == len(names) else None
     fit = estimate(plan, rest, intervals=False, near=near)
     return predictive(fit, whole.likelihood, out)
 
