@@ -21,7 +21,7 @@ _HALF_WIDTH_D, _HEIGHT_D = 1.5, 4.0
 
 @dataclass(frozen=True)
 class Frame:
-    """``vorticity`` in 1/s, NaN in the sphere, on points ``x_d``, ``z_d``: diameters from axis and wall."""
+    """``vorticity`` in 1/s on points ``x_d``, ``z_d``: diameters from axis and wall."""
 
     vorticity: NDArray
     x_d: NDArray

@@ -177,9 +177,9 @@ class ResolvedRun:
         return max(1, round(OUTPUT_D * self.flow.length / self.flow.speed))
 
     def vorticity(self) -> np.ndarray:
-        """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz); NaN inside the sphere.
+        """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz).
 
-        By central differences, the velocity inside the sphere being the sphere's own.
+        By central differences; inside the sphere the velocity is the sphere's own.
         """
         u = self.simulation.velocity
         middle = self.simulation.shape[1] // 2
@@ -189,7 +189,7 @@ class ResolvedRun:
         inside = (x[:, None] - centre[0]) ** 2 + (z[None, :] - centre[2]) ** 2 < r**2
         along[inside], up[inside] = self.spheres.velocities[0, [0, 2]]
         curl = np.gradient(along, axis=1) - np.gradient(up, axis=0)
-        return np.where(inside, np.nan, self.flow.scales.si(curl, "frequency"))
+        return self.flow.scales.si(curl, "frequency")
 
 
 def _scales(case: Case) -> FlowScales:
