@@ -9,7 +9,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ValidationError
 
@@ -53,11 +53,15 @@ class About(BaseModel):
     numbers: dict[str, float]
     contacts: tuple[SolverContact, ...]
     notes: tuple[str, ...] = ()
+    case_as_run: dict[str, Any]
 
 
 @dataclass(frozen=True)
 class KeptRun:
-    """A case and its kept result. ``stale``: made by another version of case, code or data."""
+    """A case and its kept result. ``stale``: made by another version of case, code or data.
+
+    ``case`` is the case as it was run, which for a stale result need not be the present one.
+    """
 
     case: Case
     about: About
@@ -76,7 +80,10 @@ class KeptRun:
 
 
 def read_run(case: Case, folder: Path = FOLDER) -> KeptRun | None:
-    """The kept result of a case, None where there is none; raises :class:`InputError` for a damaged one."""
+    """The kept result of a case; raises :class:`InputError` for a damaged one.
+
+    None where there is none, or one of a case in an older form than can be read.
+    """
     place = folder / case.name
     if not (place / "run.json").is_file():
         return None
@@ -85,12 +92,18 @@ def read_run(case: Case, folder: Path = FOLDER) -> KeptRun | None:
     except (ValidationError, ValueError):
         rule = "is damaged: delete the folder, or repeat the run with --fresh"
         raise InputError(Defect(rule, str(place / "run.json"))) from None
+    stale = about.key != run_key(case).key
+    if stale:
+        try:
+            case = Case.model_validate(about.case_as_run)
+        except ValidationError:
+            return None
     trajectory = read_table(place / "trajectory.csv", datasets.schema("trajectory"))
     velocity = read_table(place / "velocity.csv", datasets.schema("settling"))
     impacts = _impacts(place / "impacts.csv")
     flow = FlowFrames()
     flow.read(place / "flow.npz")
-    return KeptRun(case, about, trajectory, velocity, impacts, flow, about.key != run_key(case).key)
+    return KeptRun(case, about, trajectory, velocity, impacts, flow, stale)
 
 
 def _impacts(path: Path) -> pd.DataFrame:

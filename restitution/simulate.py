@@ -131,6 +131,7 @@ def results(
         "numbers": {name: float(f"{value:.5g}") for name, value in run.flow.describe().items()},
         "contacts": [_contact(c, first) for c in run.contacts],
         "notes": notes,
+        "case_as_run": case.model_dump(mode="json", exclude_none=True),
     }
     return {
         "trajectory.csv": csv(trajectory),

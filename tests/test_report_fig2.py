@@ -34,6 +34,7 @@ def keep(folder, name, e, current=True):
     about = key | {
         "case": name, "date": "2001-02-03", "finished": True, "seconds": 1.0, "threads": 1, "steps": 10,
         "shape": [8, 8, 8], "step_s": 1e-5,
+        "case_as_run": case.model_dump(mode="json", exclude_none=True),
         "numbers": dict.fromkeys(("Re", "Ma", "relaxation time", "grid Re"), 1.0),
         "contacts": [
             {"time_s": starts[k], "speed_in_m_s": v / e, "speed_out_m_s": v} for k, v in enumerate(speeds)

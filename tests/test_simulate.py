@@ -229,10 +229,12 @@ def test_a_run_of_other_code_is_stale(run, tmp_path):
         (tmp_path / case.name / name).write_bytes((out / name).read_bytes())
     about = json.loads((out / "run.json").read_text())
     about |= {"key": "0" * 12, "code_hash": "0" * 12}
+    about["case_as_run"]["numerics"]["cells_per_diameter"] = 7.0
     (tmp_path / case.name / "run.json").write_text(json.dumps(about))
     kept = read_run(case, tmp_path)
     assert kept.stale
     assert "0" * 12 in kept.made_with
+    assert kept.case.numerics.cells_per_diameter == 7.0  # as it was run, not as the case is now
 
 
 def test_a_damaged_result_is_named(run, tmp_path):

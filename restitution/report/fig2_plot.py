@@ -164,7 +164,7 @@ def draw_flow(fig2: Fig2) -> Drawing | None:
         return None
     scale = run.case.sphere.diameter / run.case.reference_speed
     with style():
-        figure = Figure(figsize=(11.0, 4.6), layout="constrained")
+        figure = Figure(figsize=(11.0, 4.0), layout="constrained")
         axes = figure.subplots(1, len(MOMENTS), sharey=True)
         for ax, moment in zip(axes, MOMENTS, strict=True):
             if moment not in frames:
