@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from restitution.cli import build_parser
@@ -15,13 +16,15 @@ PRINTED = (
     r"legendre_2005: apexes (\d\.\d\d(, )?){3} mm, 0\.14\d d from the frames\n"
     r"eq4_exponential: apexes (\d\.\d\d(, )?){3} mm, 0\.03\d d from the frames\n",
     r"viscosity measured / set: (0\.999|1\.000)\d\d\n",
+    r"\[[^\]]+\] \[[^\]]+\]\n",
 )
 EXAMPLES = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 
 
 @pytest.mark.parametrize(("code", "printed"), list(zip(EXAMPLES, PRINTED, strict=True)))
-def test_python_examples_run(code, printed, capsys):
-    exec(compile(code, "README.md", "exec"), {})
+def test_python_examples_run(code, printed, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # some write files
+    exec(compile(code, "README.md", "exec"), {"np": np})  # the second of a section goes on from the first
     assert re.fullmatch(printed, capsys.readouterr().out)
 
 
