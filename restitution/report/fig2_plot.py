@@ -179,7 +179,7 @@ def draw_flow(fig2: Fig2) -> Drawing | None:
             ax.set_aspect("equal")
             ax.set_ylim(-0.05, 3.0)
             ax.set_xlabel("$x/d$  [-]")
-            ax.set_title(f"{moment} the impact: $t$ = {f.time_s * 1e3:.1f} ms", fontsize=10)
+            ax.set_title(f"{moment} the impact: $t$ = {f.time_s * 1e3:.1f} ms, $h/d$ = {f.gap_d:.2f}", fontsize=10)
         axes[0].set_ylabel("height  $z/d$  [-]")
         figure.colorbar(drawn, ax=axes, label=r"vorticity  $\omega_y d/u_{in}$  [-]", shrink=0.8)
         return save(figure)
