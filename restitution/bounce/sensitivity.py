@@ -38,8 +38,10 @@ def variants(closures: Closures) -> dict[str, Closures]:
         found["resistance of the wall"] = replace(closures, wall=None)
     if closures.lubrication:
         found["lubrication"] = replace(closures, lubrication=False)
-    if closures.rebound is not None:
-        found["loss by e_eff"] = replace(closures, rebound=None, lubrication=False)
+        if math.isfinite(closures.tension):
+            found["cavitation of the film"] = replace(closures, tension=math.inf)
+    if closures.black_box:
+        found["loss by e_eff"] = replace(closures, rebound=None, measured=None, lubrication=False)
     if closures.drag is not None:
         found["steady drag"] = replace(closures, drag=None)
     return found
