@@ -51,20 +51,29 @@ class Numerics(Record):
     interpolation: Literal["linear", "central-linear"] = "linear"
 
 
-FilmForm = Literal["none", "source_abstract_eq3", "nguyen_ladd_2002", "brenner_1961_difference"]
+FilmForm = Literal["none", "lost_to_grid", "source_abstract_eq3", "nguyen_ladd_2002", "brenner_1961_difference"]
 
 
 class FilmModel(Record):
-    """The lubrication force added below ``cut_off_cells``, constant below the ``floor``, in m.
+    """The lubrication force added below the cut-off, constant below the ``floor``, in m.
 
+    ``lost_to_grid`` is what the grid lacks of the film, which fixes its cut-off (:func:`lbm.film.lost_to_grid`);
+    the other forms have one to choose, ``cut_off_cells``, by default 1.
     At the floor sphere and wall touch; by default it is the larger of the stated roughnesses.
     """
 
     form: FilmForm = "none"
-    cut_off_cells: Positive = 1.0
+    cut_off_cells: Positive | None = None
     floor: Positive | None = None
     tension: Positive | None = None
     """Tension in Pa at which the film cavitates as the sphere leaves (``cavitating_film``); else it holds."""
+
+    @property
+    def cut_off(self) -> float:
+        """Cut-off in cells."""
+        if self.form == "lost_to_grid":
+            return 0.5
+        return 1.0 if self.cut_off_cells is None else self.cut_off_cells
 
 
 ContactMode = Literal["effective", "dry", "soft_linear", "soft_hertz"]

@@ -1,7 +1,8 @@
 """Where cases come from: a TOML file of the user's, or one shipped with the package, by name.
 
-A file may name a ``base``, a shipped case or a file beside it, whose keys it then replaces one by one; the
-sections ``[contact]`` and ``[release]`` replace those of the base as a whole, their keys depending on each other.
+A file may name a ``base``, a shipped case or a file beside it, whose keys it then replaces one by one. A section
+that says anew of which kind it is (``form`` of a film, ``mode`` of a contact, ``kind`` of a release) replaces that
+of the base as a whole, its keys depending on it.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from restitution.conditions import defects_of, read_toml
 from restitution.errors import Defect, InputError
 
 FOLDER = Path(__file__).parent / "cases"
-_WHOLE = ("contact", "release")
+_KIND = {"film": "form", "contact": "mode", "release": "kind"}
 _DEEPEST = 5
 
 
@@ -74,11 +75,11 @@ def _content(path: Path, depth: int = 0) -> dict[str, Any]:
 
 
 def _over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
-    """``above`` over ``below``, sections key by key but those that are replaced as a whole."""
+    """``above`` over ``below``, sections key by key but those that say anew of which kind they are."""
     merged = dict(below)
     for key, value in above.items():
         both = isinstance(value, dict) and isinstance(below.get(key), dict)
-        merged[key] = {**below[key], **value} if both and key not in _WHOLE else value
+        merged[key] = {**below[key], **value} if both and _KIND.get(key) not in value else value
     return merged
 
 

@@ -64,6 +64,8 @@ def _span(case: Case) -> Iterator[Finding]:
 
 
 def _film(case: Case) -> Iterator[Finding]:
+    if case.film.form == "lost_to_grid" and case.film.cut_off_cells is not None:
+        yield "film.cut_off_cells", f"{case.film.cut_off_cells:g}", "is not to choose: lost_to_grid has its own"
     if case.film.tension is not None and case.film.form == "none":
         yield "film.tension", f"{case.film.tension:g}", "needs a film that it can tear: film.form is 'none'"
     touches = case.contact is not None and case.contact.mode != "effective"
@@ -71,8 +73,8 @@ def _film(case: Case) -> Iterator[Finding]:
         yield "film.floor", None, "is missing, and no roughness is stated: give the gap in m at which they touch"
     elif case.floor is not None and case.numerics is not None:
         cell = case.sphere.diameter / case.numerics.cells_per_diameter
-        if case.floor >= case.film.cut_off_cells * cell:
-            cut_off = case.film.cut_off_cells
+        if case.floor >= case.film.cut_off * cell:
+            cut_off = case.film.cut_off
             rule = f"must lie below the cut-off of {cut_off:g} cells = {cut_off * cell:.3g} m"
             yield "film.floor", f"{case.floor:g}", rule
 
@@ -126,10 +128,10 @@ def _resolution(case: Case) -> Iterator[Finding]:
             None,
             "is missing: a release from rest does not give the speed to scale by",
         )
-    if case.film.cut_off_cells > n.cells_per_diameter / 2:
+    if case.film.cut_off > n.cells_per_diameter / 2:
         yield (
             "film.cut_off_cells",
-            f"{case.film.cut_off_cells:g}",
+            f"{case.film.cut_off:g}",
             "is more than a radius: lubrication is a film's",
         )
 

@@ -17,7 +17,7 @@ import numpy as np
 
 import lbm
 from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact
-from lbm.film import Film
+from lbm.film import Film, lost_to_grid
 from lbm.observers import DivergenceGuard, FieldOutput
 from lbm.rates import PRESETS
 from lbm.scales import FlowScales
@@ -245,19 +245,24 @@ def _film(case: Case, flow: FlowScales) -> Film | None:
     if case.floor is None or (case.contact is not None and case.contact.mode == "effective"):
         return None
     floor = flow.scales.lattice(case.floor, "length")
-    return Film(case.film.cut_off_cells, floor, normal_force(case, flow))
+    return Film(case.film.cut_off, floor, normal_force(case, flow))
 
 
 def normal_force(case: Case, flow: FlowScales) -> Callable[[float, float, float], float] | None:
     """The film's normal force in lattice units, of gap, velocity away from the wall, and that at the cut-off."""
     form, r, mu = case.film.form, flow.length / 2, flow.viscosity
-    cut_off, floor = case.film.cut_off_cells, flow.scales.lattice(case.floor, "length")
+    cut_off, floor = case.film.cut_off, flow.scales.lattice(case.floor, "length")
     if form == "none":
         return None
     if form == "source_abstract_eq3":
 
         def holding(gap: float, velocity: float, onset: float) -> float:
             return -float(lubrication_force(gap, -velocity, -onset, r=r, mu=mu, D0=cut_off, h_min=floor))
+
+    elif form == "lost_to_grid":
+
+        def holding(gap: float, velocity: float, onset: float) -> float:
+            return -6 * math.pi * mu * r * r * velocity * lost_to_grid(gap)
 
     else:
         law = laws.get(form, eps_c=cut_off / r, eps_min=floor / r)
@@ -270,13 +275,14 @@ def normal_force(case: Case, flow: FlowScales) -> Callable[[float, float, float]
     torn, tension = CavitatingFilm(), flow.scales.lattice(case.film.tension, "pressure")
 
     def tearing(gap: float, velocity: float, onset: float) -> float:
-        """Of the two the weaker: what the film holds, and what it does torn, less what the grid resolves."""
+        """The torn film's force less what the grid has of the film: the holding one's less what is added to it."""
         force = holding(gap, velocity, onset)
         if velocity <= 0:
             return force
-        eta = film_edge(mu, velocity, r, tension)
-        of_both = [float(torn(max(h, floor) / r, eta, out_of_range="ignore")) for h in (gap, cut_off)]
-        return max(force, -6 * math.pi * mu * r * velocity * max(0.0, of_both[0] - of_both[1]))
+        h = max(gap, floor)
+        whole = float(torn(h / r, film_edge(mu, velocity, r, tension), out_of_range="ignore"))
+        in_grid = r / h + force / (6 * math.pi * mu * r * velocity)
+        return min(0.0, -6 * math.pi * mu * r * velocity * (whole - in_grid))
 
     return tearing
 

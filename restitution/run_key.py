@@ -7,6 +7,7 @@ not when a sentence about it has. The hash is the same under all versions of Pyt
 from __future__ import annotations
 
 import hashlib
+import inspect
 import io
 import json
 import tokenize
@@ -15,19 +16,18 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from restitution import datasets
+from restitution import datasets, laws
 from restitution.case import Case
 
 _HERE = Path(__file__).parent
 _MODULES = (
-    "resolved.py",
-    "simulate.py",
-    "measured_bounces.py",
-    "impacts.py",
-    "impact_speed.py",
-    "branch.py",
-    "tracks.py",
-)
+    "branch.py", "conditions.py", "impact_speed.py", "impacts.py", "measured_bounces.py", "resolved.py",
+    "simulate.py", "stokes.py", "tracks.py", "laws/base.py", "laws/brenner_1961.py", "laws/cavitation.py",
+    "laws/cut_off.py", "laws/rebound.py", "laws/resistance.py", "laws/source_abstract_eq3.py",
+    "laws/wall_normal.py",
+)  # fmt: skip
+_WITHOUT_EFFECT = {"problems.py", "progress.py", "vtkhdf.py"}
+"""Modules of the solver that no result depends on."""
 _FOR_READERS = {"title", "note", "prediction"}
 _LAYOUT = (tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.COMMENT)
 _DIGITS = 12
@@ -52,23 +52,24 @@ class RunKey:
 
 
 def run_key(case: Case) -> RunKey:
-    """The key of a case under this version of the code."""
+    """The key of a case under this version of the code; a rebound law and a record count as its data."""
     content = case.model_dump(mode="json", exclude=_FOR_READERS)
-    taken = [datasets.resource(case.record).hash] if case.contact and case.contact.measured == "record" else []
+    contact, taken = case.contact, []
+    if contact is not None and contact.measured == "record":
+        taken.append(datasets.resource(case.record).hash)
+    if contact is not None and contact.law is not None:
+        taken.append(program(inspect.getsource(inspect.getmodule(type(laws.get(contact.law))))))
     return RunKey(_hash([json.dumps(content, sort_keys=True)]), code_hash(), _hash(taken))
 
 
 @cache
 def code_hash() -> str:
-    """Hash of the solver, of the laws, and of what lies between them and a result."""
+    """Hash of the solver and of what lies between it and a result."""
     import lbm
 
-    files = [
-        *Path(lbm.__file__).parent.glob("*.py"),
-        *(_HERE / "laws").glob("*.py"),
-        *(_HERE / m for m in _MODULES),
-    ]
-    return _hash(f"{path.parent.name}/{path.name}\n{program(path.read_text('utf-8'))}" for path in sorted(files))
+    solver = [path for path in Path(lbm.__file__).parent.glob("*.py") if path.name not in _WITHOUT_EFFECT]
+    files = {f"lbm/{path.name}": path for path in solver} | {name: _HERE / name for name in _MODULES}
+    return _hash(f"{name}\n{program(files[name].read_text('utf-8'))}" for name in sorted(files))
 
 
 def program(source: str) -> str:

@@ -72,9 +72,12 @@ def test_base_and_record_give_way_to_the_case(tmp_path):
     assert (case.numerics.width_d, case.numerics.cells_per_diameter) == (6.0, 10)
 
 
-def test_a_contact_replaces_that_of_the_base_as_a_whole(tmp_path):
-    case = read(tmp_path, 'base = "gondret_st152_10_soft"\n[contact]\nmode = "dry"\n')
+def test_a_section_of_another_kind_replaces_that_of_the_base(tmp_path):
+    case = read(tmp_path, 'base = "gondret_st152_10_soft"\n[contact]\nmode = "dry"\n[film]\ncut_off_cells = 2.0\n')
+    base = case_files.read_case("gondret_st152_10_soft")
     assert case.contact.duration_steps is None
+    assert case.film == base.film.model_copy(update={"cut_off_cells": 2.0})
+    assert case_files.read_case("gondret_st152_10_measured").film.tension is None
 
 
 def test_release_gap_is_the_one_the_record_states():
@@ -149,3 +152,17 @@ def test_a_circle_of_bases_ends(tmp_path):
     (tmp_path / "b.toml").write_text('base = "a"\n')
     with pytest.raises(InputError, match="base"):
         case_files.read_case(tmp_path / "a.toml")
+
+
+def test_the_list_names_every_shipped_case(capsys):
+    assert main(["simulate", "--list"]) == 0
+    out = capsys.readouterr().out
+    assert all(name in out for name in case_files.names())
+
+
+def test_a_template_can_be_read_again_and_replaces_nothing(tmp_path, capsys):
+    mine = tmp_path / "mine.toml"
+    assert main(["simulate", "gondret_st27", "--template", str(mine)]) == 0
+    own, shipped = case_files.read_case(mine), case_files.read_case("gondret_st27")
+    assert own.model_copy(update={"name": shipped.name}) == shipped
+    assert main(["simulate", "gondret_st27", "--template", str(mine)]) == 2

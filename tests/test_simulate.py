@@ -247,6 +247,14 @@ def test_the_key_follows_the_case_but_not_its_title(tmp_path):
     assert len({run_key(c).key for c in (first, renamed, moved)}) == 3
 
 
+def test_the_key_follows_what_the_contact_takes():
+    keys = {
+        n: run_key(case_files.read_case(f"gondret_st152_10{n}")) for n in ("", "_legendre", "_eq4", "_measured")
+    }
+    assert len({key.data for key in keys.values()}) == 4
+    assert len({key.code for key in keys.values()}) == 1
+
+
 def test_code_is_the_same_program_whatever_is_said_about_it():
     plain = "def f(x):\n    y = '# no comment'\n    return x + 1\n"
     said = (

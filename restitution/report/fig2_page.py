@@ -33,6 +33,7 @@ SENSITIVITY = (
     ("width of the box", ("gondret_st152_10", "gondret_st152_10_wide")),
     ("lattice speed", ("gondret_st152_10", "gondret_st152_10_fast")),
     ("cut-off of the film force", ("gondret_st152_10", "gondret_st152_10_cutoff2")),
+    ("cavitation of the film", ("gondret_st152_10", "gondret_st152_10_suction")),
 )
 """What is varied, and the cases; changes are from the first."""
 
@@ -227,7 +228,7 @@ def _numerics(run: KeptRun) -> dict:
         "step_us": f"{about.step_s * 1e6:.3g}",
         "numbers": {k: f"{about.numbers[k]:.4g}" for k in ("Re", "Ma", "relaxation time", "grid Re")},
         "method": f"{n.rates}, {n.interpolation}, {n.precision}; sides {n.sides}, top {n.top}",
-        "film": film.form if film.form == "none" else f"{film.form}, {film.cut_off_cells:g} cells",
+        "film": film.form if film.form == "none" else f"{film.form}, {film.cut_off:g} cells",
         "seconds": f"{about.seconds:.0f} ({about.threads})",
     }  # fmt: skip
 

@@ -66,7 +66,7 @@ def _row(run: KeptRun, record: Bounces | None) -> dict[str, object]:
         "width_d": n.width_d,
         "lattice_speed": n.lattice_speed,
         "film": case.film.form,
-        "cut_off_cells": case.film.cut_off_cells,
+        "cut_off_cells": case.film.cut_off,
         "floor_m": case.floor,
         "approach_speed_m_s": float(far.impact_speed_m_s.iloc[0]) if len(far) else math.nan,
     }
