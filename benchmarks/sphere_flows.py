@@ -203,7 +203,7 @@ def shear(diameter: float, *, width=5.0, height=6.0, rate=2e-5, viscosity=1 / 6,
             [Sphere(diameter / 2, 1.0, centre, spin=spin)], drive=None if free else lambda step, gap: STILL
         )
         flow.passes.append(ball)
-        flow.run(int(4 * diameter**2 / viscosity))
+        flow.run(int(2 * diameter**2 / viscosity))
         found.append(ball.spins[0, 1] if free else ball.torques[0, 1])
     unit = 4 * math.pi * viscosity * (diameter / 2) ** 3 * rate
     return Shear(rate * diameter**2 / viscosity, 2 * found[0] / rate, found[1] / unit)
@@ -253,7 +253,8 @@ def settling(
     flow.passes.append(ball)
     flow.run(int(duration / dt))
     track = ball.track()
-    return Settling(track["step"] * dt, track["gap"] * dx, track["vz"] * dx / dt)
+    # the nearest wall is the ceiling at first
+    return Settling(track["step"] * dt, (track["z"] - radius) * dx, track["vz"] * dx / dt)
 
 
 def rebound(

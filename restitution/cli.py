@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Sequence
 
 from restitution import __version__
-from restitution.commands import bounce, data, impacts, laws, report, simulate
+from restitution.commands import bounce, compare, data, design, fit, impacts, laws, predict, report, simulate
 from restitution.errors import InputError, OutOfRangeWarning
 
 
@@ -16,11 +16,11 @@ def build_parser() -> argparse.ArgumentParser:
     """The parser of the whole command line."""
     parser = argparse.ArgumentParser(
         prog="restitution",
-        description="Reference toolkit for wet rebound: closure laws, measured data, impacts, comparison reports.",
+        description="Reference toolkit for wet rebound: laws, measured data, impacts, calibration, reports.",
     )
     parser.add_argument("--version", action="version", version=f"restitution {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for module in (data, laws, impacts, simulate, bounce, report):
+    for module in (data, laws, impacts, fit, compare, predict, design, simulate, bounce, report):
         module.add_parser(commands)
     return parser
 

@@ -16,7 +16,15 @@ from restitution.report import fig1
 from restitution.stokes import Speed
 
 ROOT = Path(__file__).parent.parent
-FILES = {"figure.svg", "figure.png", "impacts.csv", "impacts_by_speed.csv", "laws.csv", "index.html"}
+FILES = {
+    "figure.svg",
+    "figure.png",
+    "impacts.csv",
+    "impacts_by_speed.csv",
+    "laws.csv",
+    "readings.csv",
+    "index.html",
+}
 
 
 @pytest.fixture(scope="module")

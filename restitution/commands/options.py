@@ -11,13 +11,14 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
         "--column",
         action="append",
         default=[],
-        type=_pair,
+        type=pair,
         metavar="COLUMN=NAME",
         help="the file's own NAME for a column, as in gap_m=y; other columns are then ignored; may be repeated",
     )
 
 
-def _pair(text: str) -> tuple[str, str]:
+def pair(text: str) -> tuple[str, str]:
+    """``NAME=VALUE`` as an argument type."""
     name, equals, value = text.partition("=")
     if not (name and equals and value):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=VALUE")
@@ -26,7 +27,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 def assignment(text: str) -> tuple[str, float]:
     """``NAME=NUMBER`` as an argument type."""
-    name, value = _pair(text)
+    name, value = pair(text)
     try:
         return name, float(value)
     except ValueError:

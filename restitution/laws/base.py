@@ -53,9 +53,14 @@ class CheckValue:
     parameters: dict[str, float] = dataclasses.field(default_factory=dict)
 
 
-def parameter(default: float, bounds: tuple[float, float], unit: str, meaning: str, source: str) -> Any:
-    """A law's parameter: a dataclass field that carries its bounds, unit, meaning and source."""
-    metadata = {"bounds": bounds, "unit": unit, "meaning": meaning, "source": source}
+def parameter(
+    default: float, bounds: tuple[float, float], unit: str, meaning: str, source: str, chosen: bool = False
+) -> Any:
+    """A law's parameter: a dataclass field that carries its bounds, unit, meaning and source.
+
+    ``chosen`` marks one that is set by choice and that data cannot tell from another: a fit leaves it as it is.
+    """
+    metadata = {"bounds": bounds, "unit": unit, "meaning": meaning, "source": source, "chosen": chosen}
     return dataclasses.field(default=default, metadata=metadata)
 
 
@@ -209,7 +214,7 @@ class Law:
         return self._compiled(self.variables[0], arrays)
 
     def _compiled(self, wrt: str | None, arrays: tuple[np.ndarray, ...]) -> np.ndarray:
-        function = _compile(self.formula, self._symbols, wrt)
+        function = compiled_formula(self.formula, self._symbols, wrt)
         shape = np.broadcast_shapes(*(a.shape for a in arrays))
         # 1/St, log and Heaviside at the edges (St -> 0, inf) are meant: they give the limits.
         with np.errstate(divide="ignore", over="ignore"):
@@ -226,7 +231,7 @@ def _parse(formula: str, symbols: tuple[str, ...]) -> Any:
 
 
 @cache
-def _compile(formula: str, symbols: tuple[str, ...], wrt: str | None) -> Any:
+def compiled_formula(formula: str, symbols: tuple[str, ...], wrt: str | None) -> Any:
     import sympy
 
     positive = [sympy.Symbol(s, positive=True) for s in symbols]

@@ -102,7 +102,7 @@ class EhdComposite(ReboundLaw):
         for St, e, D_um in ((152.8, 0.78, 3.2), (78.6, 0.63, 1.9), (44.6, 0.42, 1.2), (23.1, 0.0, 0.7))
     )  # fmt: skip
     h0: float = parameter(
-        0.4, (1e-2, 10.0), "r", "gap where lubrication begins to act", "two cells at ten a diameter"
+        0.4, (1e-2, 10.0), "r", "gap where lubrication begins to act", "two cells at ten a diameter", chosen=True
     )
     D_1: float = parameter(
         3.8e-5,

@@ -43,7 +43,7 @@ class TwoWayLubrication(ReboundLaw):
         CheckValue({"St": 18.7, "e_dry": 0.97}, 0.0, 6e-4, "threshold for h_min = 1e-4 r, independently"),
     )  # fmt: skip
     h0: float = parameter(
-        1.0, (1e-3, 10.0), "r", "gap where the film begins to act", "order of the radius; a choice"
+        1.0, (1e-3, 10.0), "r", "gap where the film begins to act", "order of the radius; a choice", chosen=True
     )
     h_min: float = parameter(
         1e-4,

@@ -8,6 +8,7 @@ stay below 0.1 d. All three definitions are tabulated, since the choice moves e_
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from restitution.conditions import Conditions
     from restitution.kept_runs import KeptRun
+    from restitution.report.fig1_verdict import Judgement
 
 SPEED = Speed.CONTACT
 SIMULATED_BY_ABSTRACT = "gondret2002_st152"
@@ -41,11 +43,16 @@ class Fig1:
     scores: pd.DataFrame
     conditions: dict[str, Conditions]
     notes: list[str]
+    judgements: list[Judgement]
     simulated: dict[str, KeptRun] = field(default_factory=dict)
 
     @property
     def measured(self) -> pd.DataFrame:
         return self.impacts[self.impacts.kind == "measured"]
+
+    def judgement(self, speed: Speed) -> Judgement:
+        """What the rebounds support under one definition of speed."""
+        return next(j for j in self.judgements if j.definition == str(speed))
 
 
 def gather(speed: Speed = SPEED, runs: str | Path | None = None) -> Fig1:
@@ -53,31 +60,43 @@ def gather(speed: Speed = SPEED, runs: str | Path | None = None) -> Fig1:
 
     ``runs`` is the folder of kept simulations: those that predict the rebound add a series that enters no score.
     """
+    simulated = {} if runs is None else predicted(Path(runs))
+    every, scores, conditions, notes, judgements = _everything()
+    rows = [row | _provenance_of_run(run) for run in simulated.values() for row in run.impacts.to_dict("records")]
+    if rows:
+        import pandas as pd
+
+        every = pd.concat([every, pd.DataFrame(rows, columns=every.columns)], ignore_index=True)
+    impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
+    return Fig1(impacts, every, scores, conditions, notes[str(speed)], judgements, simulated)
+
+
+@cache
+def _everything() -> tuple:
+    """What does not depend on the definition of speed that the figure takes: shipped data do not change."""
     import pandas as pd
+
+    from restitution.report.fig1_verdict import judge
 
     resources = [r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory"]
     resources = [r for r in resources if r.conditions.sphere.e_dry is not None]
     conditions = {r.name: r.conditions for r in resources}
     known = [laws.get(name) for name in (*EQ4_READINGS, *OTHERS)]
-    simulated = {} if runs is None else predicted(Path(runs))
-    tables, scores, notes = [], [], []
+    tables, scores, notes = [], [], {}
     for definition in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
         rows: list[dict] = []
+        notes[str(definition)] = []
         for r in resources:
             found = find_impacts(datasets.load_track(r.name), r.conditions, definition, "st", r.name, r.kind)
             rows += [row | _provenance(r) for row in found.rows]
-            if definition == speed:
-                notes += [f"{r.name}: {note}" for note in found.notes]
-        for run in simulated.values():
-            own = run.impacts[run.impacts.speed_definition == str(definition)]
-            rows += [row | _provenance_of_run(run) for row in own.to_dict("records")]
+            notes[str(definition)] += [f"{r.name}: {note}" for note in found.notes]
         columns = [*datasets.schema("impact").columns, *_provenance(resources[0])]
         tables.append(pd.DataFrame(rows, columns=columns))
         measured = tables[-1][tables[-1].kind == "measured"]
         scores.append(comparison.score(known, measured, conditions).assign(speed_definition=str(definition)))
     every = pd.concat(tables, ignore_index=True)
-    impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
-    return Fig1(impacts, every, pd.concat(scores, ignore_index=True), conditions, notes, simulated)
+    judgements = judge(every, conditions, (*EQ4_READINGS, *OTHERS))
+    return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements
 
 
 def predicted(folder: Path) -> dict[str, KeptRun]:
@@ -122,7 +141,7 @@ def _provenance_of_run(run: KeptRun) -> dict[str, object]:
 
 def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = None) -> list[str]:
     """Write the report into ``folder``; returns the names of the files. The same input gives the same bytes."""
-    from restitution.report import fig1_page, fig1_plot
+    from restitution.report import fig1_page, fig1_plot, fig1_verdict
 
     fig1 = gather(speed, runs)
     drawing = fig1_plot.draw(fig1, speed)
@@ -132,6 +151,7 @@ def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = No
         "impacts.csv": _csv(fig1.impacts),
         "impacts_by_speed.csv": _csv(fig1.every),
         "laws.csv": _csv(fig1.scores),
+        "readings.csv": _rounded(fig1_verdict.table(fig1.judgements)),
         "index.html": fig1_page.render(fig1, speed, drawing.svg),
     }
     write_folder(folder, files)
@@ -141,3 +161,10 @@ def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = No
 def _csv(table: pd.DataFrame) -> str:
     # Five digits: the sixth may depend on the machine's arithmetic.
     return table.to_csv(index=False, float_format="%.5g", lineterminator="\n")
+
+
+def _rounded(rows: list[dict]) -> str:
+    """Scores of fits to the digits that a search for a maximum gives on any machine."""
+    import pandas as pd
+
+    return pd.DataFrame(rows).to_csv(index=False, float_format="%.2f", lineterminator="\n")

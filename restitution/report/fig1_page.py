@@ -8,6 +8,7 @@ from restitution import datasets, laws
 from restitution.impact_speed import H_FILM
 from restitution.impacts import find_impacts
 from restitution.report import fig1 as content
+from restitution.report.fig1_verdict import in_words, table
 from restitution.report.page import render as render_page
 from restitution.stokes import CONVENTIONS, Speed
 
@@ -35,6 +36,8 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         counts={d: int(overall.xs(d, level=1)["impacts"].iloc[0]) for d in DEFINITIONS},
         ranking=_ranking(overall, str(speed)),
         verdict=_verdict(overall),
+        support=in_words(fig1.judgements, content.EQ4_READINGS),
+        judged=_judged(fig1.judgements),
         records=len(measured),
         experiments=len({r.experiment.doi for r in measured}),
         spread=_spread(fig1.every),
@@ -81,6 +84,12 @@ def _verdict(overall: pd.DataFrame) -> str:
     if rejected:
         words += f" More than twice as far as the nearest under every definition: {', '.join(rejected)}."
     return words + " Being nearest does not make a reading the printed equation: see the evidence below."
+
+
+def _judged(judgements: list) -> list[tuple[str, list[dict]]]:
+    """Rows of the table of predictive scores, by definition of speed."""
+    rows = table(judgements)
+    return [(d, [row for row in rows if row["speed_definition"] == d]) for d in DEFINITIONS]
 
 
 def _spread(every: pd.DataFrame) -> float:

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution import laws
+from restitution.calibration.fit_result import result_of
+from restitution.calibration.prediction import predict
 from restitution.report.drawing import Drawing, save, style
 from restitution.stokes import Speed, StokesNumber
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from restitution.conditions import Conditions
     from restitution.report.fig1 import Fig1
 
 St_MIN, St_MAX = 4.0, 2000.0
@@ -29,6 +32,11 @@ LINES = {
     "barnocky_davis_1988": (r"Barnocky & Davis 1988, $St_c=10$", "#D55E00", (0, (3, 1.5, 1, 1.5))),
     "two_way_lubrication": (r"Two-way lubrication, $h_{min}=10^{-4}r$ (derived here)", "#0072B2", (0, (6, 2))),
     "ehd_composite": ("Elastohydrodynamic composite (derived here)", "#009E73", (0, (1, 1.2))),
+}
+_FORMS = {
+    "eq4_exponential": r"$e\,\exp[-K(1+e)/St]$",
+    "eq4_rational": r"$e/[1+K(1+e)/St]$",
+    "eq4_linear": r"$e-K(1+e)/St$",
 }
 # label, marker, face; the edge is black
 SERIES = {
@@ -55,6 +63,8 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
             (right, "(b) Other laws", content.OTHERS),
         ):
             _known_without_points(ax)
+            if ax is left:
+                _band(ax, fig1, speed)
             _lines(ax, names, fig1)
             _points(ax, fig1)
             ax.set_title(title, loc="left", fontsize=11)
@@ -63,12 +73,31 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
             ax.set_ylim(0, 1.06)
             ax.set_xlabel(r"Stokes number at impact  $St=\rho_p v d/(9\mu)$  [-]")
             handles = [h for h in ax.get_lines() if h.get_label() in {LINES[n][0] for n in names}]
+            handles += [h for h in ax.collections if h.get_label().startswith("95 %")]
             ax.legend(handles=handles, loc="lower right", fontsize=8.5, handlelength=3.6)
         left.set_ylabel(r"effective restitution  $e_{\mathrm{eff}}/e_{\mathrm{dry}}$  [-]")
         drawn = set(fig1.impacts.record.map(_series))
         points = [_key(name) for name in SERIES if name in drawn]
         figure.legend(handles=points, loc="outside lower center", ncols=2, fontsize=8.5)
         return save(figure)
+
+
+def _drawn_for(fig1: Fig1) -> Conditions:
+    """The sphere whose St the axis is in, where a law has another."""
+    from restitution.report.fig1 import SIMULATED_BY_ABSTRACT
+
+    return fig1.conditions[SIMULATED_BY_ABSTRACT]
+
+
+def _band(ax: Axes, fig1: Fig1, speed: Speed) -> None:
+    """The best supported form of Eq. (4) with K fitted: where the curve lies with 95 %."""
+    best = fig1.judgement(speed).fitted.scores[0]
+    St = np.geomspace(St_MIN, St_MAX, 600)
+    found = predict(result_of(best.fit), St, E_DRY, _drawn_for(fig1))
+    low, high = np.clip(found.law["95%"] / E_DRY, 0, None).T
+    K = best.fit.maximum.values[0]
+    label = f"95 % of {_FORMS[best.label]}, K fitted: {K:.1f}"
+    ax.fill_between(St, low, high, color="#9a9a9a", alpha=0.6, lw=0, zorder=1, label=label)
 
 
 def _known_without_points(ax: Axes) -> None:
@@ -81,10 +110,8 @@ def _known_without_points(ax: Axes) -> None:
 
 def _lines(ax: Axes, names: tuple[str, ...], fig1: Fig1) -> None:
     """The laws over the axis, at e_dry = 0.97, in St; those of another convention for the 3 mm sphere."""
-    from restitution.report.fig1 import SIMULATED_BY_ABSTRACT
-
     St = np.geomspace(St_MIN, St_MAX, 600)
-    conditions = fig1.conditions[SIMULATED_BY_ABSTRACT]
+    conditions = _drawn_for(fig1)
     for name in names:
         law = laws.get(name)
         label, colour, dashes = LINES[name]

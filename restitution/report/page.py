@@ -6,7 +6,7 @@ import base64
 from importlib import metadata
 from typing import Any
 
-LIBRARIES = ("restitution", "numpy", "scipy", "pandas", "sympy", "matplotlib")
+LIBRARIES = ("restitution", "numpy", "scipy", "pandas", "sympy", "iminuit", "matplotlib")
 
 
 def render(template: str, **content: Any) -> str:

@@ -1,0 +1,123 @@
+"""The observations of a fit: one impact an element, measured or censored, with errors, labels and provenance."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.conditions import Conditions
+from restitution.errors import ConventionError, Defect, InputError
+from restitution.stokes import Speed, StokesNumber
+
+
+@dataclass(frozen=True)
+class Observations:
+    """Arrays of length n, one element an impact.
+
+    ``e`` is NaN where no rebound was seen; then e_eff was at most ``upper`` (NaN elsewhere). ``e_sigma`` is zero
+    where no error is known: the scatter that is estimated then has it. ``correlation`` is that of the errors of e
+    and St. ``e_dry`` and ``e_dry_sigma`` are NaN where nobody states them. ``labels`` has one text an impact for
+    each way of grouping: ``source``, ``material``, ...
+    """
+
+    St: NDArray
+    St_sigma: NDArray
+    e: NDArray
+    e_sigma: NDArray
+    correlation: NDArray
+    upper: NDArray
+    e_dry: NDArray
+    e_dry_sigma: NDArray
+    labels: Mapping[str, NDArray]
+    convention: str
+    speed: Speed
+    conditions: tuple[Conditions | None, ...]
+    places: tuple[tuple[str, int], ...] = ()
+    """File and row of each impact."""
+    files: Mapping[str, str] = field(default_factory=dict)
+    """sha256 of each file."""
+    notes: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.St)
+
+    @property
+    def censored(self) -> NDArray:
+        """Where no rebound was seen."""
+        return np.isnan(self.e)
+
+    def take(self, which: NDArray) -> Observations:
+        """Those impacts alone; ``which`` is a mask or indices."""
+        index = np.arange(len(self))[which]
+        arrays = {
+            f.name: getattr(self, f.name)[index]
+            for f in dataclasses.fields(self)
+            if isinstance(getattr(self, f.name), np.ndarray)
+        }
+        return dataclasses.replace(
+            self,
+            **arrays,
+            labels={name: values[index] for name, values in self.labels.items()},
+            conditions=tuple(self.conditions[i] for i in index),
+            places=tuple(self.places[i] for i in index) if self.places else (),
+        )
+
+    def ratio_to(self, convention: str) -> NDArray:
+        """St of another convention over the St here, impact by impact; raises where conditions are needed."""
+        known: dict[int, float] = {}
+        ratio = np.empty(len(self))
+        for i, conditions in enumerate(self.conditions):
+            key = id(conditions)
+            if key not in known:
+                try:
+                    known[key] = StokesNumber(1.0, self.convention, self.speed).to(convention, conditions).value
+                except ConventionError as error:
+                    columns = "fluid_density_kg_m3, fluid_viscosity_Pa_s, sphere_diameter_m, sphere_density_kg_m3"
+                    file, row = self.places[i] if self.places else (None, None)
+                    rule = f"{error} (the columns {columns}, or --conditions FILE)"
+                    raise ConventionError(Defect(rule, file, row)) from None
+            ratio[i] = known[key]
+        return ratio
+
+    def groups(self, label: str) -> tuple[list[str], NDArray]:
+        """The levels of a label in order of appearance, and the index of each impact's level."""
+        if label not in self.labels:
+            known = ", ".join(self.labels) or "none"
+            raise InputError(Defect(f"is not a column that groups the impacts; there are: {known}", field=label))
+        levels = list(dict.fromkeys(self.labels[label]))
+        return levels, np.array([levels.index(x) for x in self.labels[label]], int)
+
+
+def join(parts: list[Observations]) -> Observations:
+    """All observations of several files; raises :class:`InputError` where conventions differ."""
+    first = parts[0]
+    for other in parts[1:]:
+        for what in ("convention", "speed"):
+            if getattr(other, what) != getattr(first, what):
+                file = next(iter(other.files), None)
+                rule = f"{what} differs from {getattr(first, what)} of {next(iter(first.files), 'the first file')}"
+                raise InputError(
+                    Defect(f"{rule}: fit data of one definition", file, value=str(getattr(other, what)))
+                )
+    names = dict.fromkeys(name for part in parts for name in part.labels)
+    labels = {
+        name: np.concatenate([p.labels.get(name, np.full(len(p), "", object)) for p in parts]) for name in names
+    }
+    arrays = {
+        f.name: np.concatenate([getattr(p, f.name) for p in parts])
+        for f in dataclasses.fields(first)
+        if isinstance(getattr(first, f.name), np.ndarray)
+    }
+    return dataclasses.replace(
+        first,
+        **arrays,
+        labels=labels,
+        conditions=tuple(c for p in parts for c in p.conditions),
+        places=tuple(x for p in parts for x in p.places),
+        files={name: digest for p in parts for name, digest in p.files.items()},
+        notes=tuple(dict.fromkeys(note for p in parts for note in p.notes)),
+    )

@@ -1,0 +1,126 @@
+"""``restitution compare``: which law do the data support, and do they tell laws apart."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from restitution.commands import fit
+from restitution.console import show, show_rows
+
+if TYPE_CHECKING:
+    from restitution.calibration.ranking import Ranking
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    """Declare ``compare DATA... [--law LAW ...]``."""
+    parser = commands.add_parser(
+        "compare",
+        help="rank laws on your own impacts, by refitting without each impact and each source",
+        description="Rank rebound laws by AIC, BIC, leave-one-out and leave-one-source-out predictive scores.",
+    )
+    fit.add_data(parser)
+    parser.add_argument(
+        "--law",
+        action="append",
+        metavar="LAW",
+        help="a law or a formula; may be repeated (default: all rebound laws)",
+    )
+    parser.add_argument("--law-stokes", metavar="CONVENTION", help="which Stokes number St in a formula is")
+    parser.add_argument("--as-published", action="store_true", help="hold the laws' parameters at their defaults")
+    fit.add_plan(parser)
+    parser.add_argument("--out", metavar="FILE", help="also write the table, as CSV")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> None:
+    """Print the ranking, best first, and what the data do not separate."""
+    from restitution import laws
+    from restitution.calibration.impact_data import read
+    from restitution.calibration.ranking import rank
+    from restitution.errors import InputError
+    from restitution.files import write_whole
+
+    if not args.data:
+        raise InputError("name the data: CSV files or shipped records")
+    observations = read(args.data, fit.reading_of(args))
+    plans = []
+    wanted = args.law or laws.names("rebound")
+    for law in wanted:
+        plan = fit.plan_of(args, law, args.law_stokes or observations.convention, strict=len(wanted) == 1)
+        if args.as_published:
+            plan = replace(plan, fixed={p.name: p.start for p in plan.model.parameters} | dict(plan.fixed))
+        plans.append((law, plan))
+    progress = (lambda law: print(f"fitting {law} ...", file=sys.stderr)) if sys.stderr.isatty() else None  # noqa: T201
+    ranking = rank(plans, observations, progress=progress)
+    if args.out:
+        write_whole(args.out, _csv(ranking))
+    show(f"{len(observations)} impacts; higher elpd and lower AIC, BIC are better; d: less than the best")
+    _show(ranking)
+
+
+HEADINGS = (
+    "law",
+    "k",
+    "log L",
+    "AIC",
+    "BIC",
+    "elpd, one out",
+    "d",
+    "+-",
+    "elpd, source out",
+    "check p",
+    "separated",
+)
+
+
+def table(ranking: Ranking) -> list[tuple[str, ...]]:
+    """The ranking as cells."""
+    best, rows = ranking.scores[0], []
+    for s in ranking.scores:
+        gap, error = ranking.difference(best, s)
+        loso = "" if s.elpd_loso is None else f"{s.elpd_loso:.1f}"
+        apart = "best" if s is best else ("yes" if ranking.separated(best, s) else "no")
+        rows.append(
+            (
+                s.label,
+                str(s.parameters),
+                f"{s.log_likelihood:.1f}",
+                f"{s.aic:.1f}",
+                f"{s.bic:.1f}",
+                f"{s.elpd_loo:.1f}",
+                f"{gap:.1f}",
+                f"{error:.1f}",
+                loso,
+                f"{s.check:.2f}",
+                apart,
+            )
+        )
+    return rows
+
+
+def _csv(ranking: Ranking) -> str:
+    import csv
+    import io
+
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(HEADINGS)
+    writer.writerows(table(ranking))
+    return text.getvalue()
+
+
+def _show(ranking: Ranking) -> None:
+    show_rows(HEADINGS, table(ranking), right=HEADINGS[1:-1])
+    contenders = [s.label for s in ranking.contenders]
+    if len(contenders) > 1:
+        show(f"the data do not separate: {', '.join(contenders)}")
+    elif len(ranking.scores) > 1:
+        show(f"the data support {contenders[0]} over all others")
+    for s in ranking.scores:
+        if s.check < 0.05:
+            show(f"note: {s.label} lacks the shape of the data: neighbours in St deviate alike, p = {s.check:.3f}")
+    for label, reason in ranking.failed.items():
+        show(f"left out: {label}: {reason}")

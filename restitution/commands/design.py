@@ -1,0 +1,106 @@
+"""``restitution design``: what to measure next to narrow an interval of a fit."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from restitution.commands.predict import numbers
+from restitution.console import show, show_rows
+
+if TYPE_CHECKING:
+    from restitution.calibration.design import Gain
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    """Declare ``design FIT --for NAME``."""
+    parser = commands.add_parser(
+        "design",
+        help="what to measure next: which fluid, sphere and speed would narrow an interval most",
+        description="Rank feasible experiments by how much they would narrow a chosen interval of a fit.",
+    )
+    parser.add_argument("fit", metavar="FIT", help="the JSON of a fit")
+    goal = parser.add_mutually_exclusive_group()
+    goal.add_argument("--parameter", metavar="NAME", help="narrow this parameter (default: the first of the law)")
+    goal.add_argument("--at", type=float, metavar="ST", help="narrow e_eff at this Stokes number instead")
+    parser.add_argument(
+        "--shots", type=_shots, default=(1, 5, 20), metavar="M[,M...]", help="impacts each (1,5,20)"
+    )
+    parser.add_argument(
+        "--pairs", metavar="FILE", help="feasible fluids and spheres, as CSV (default: a shipped list)"
+    )
+    parser.add_argument(
+        "--height", type=numbers, default=[0.01, 0.05, 0.2], metavar="H[,H...]", help="release heights in m"
+    )
+    parser.add_argument("--e-sigma", type=float, metavar="S", help="error of a new e_eff (default: as in the fit)")
+    parser.add_argument("--st-sigma", type=float, metavar="S", help="relative error of a new St (as in the fit)")
+    parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
+    parser.add_argument("--same-source", action="store_true", help="no new offset: the same laboratory and set-up")
+    parser.add_argument("--beyond", action="store_true", help="also St outside the calibrated range")
+    parser.add_argument("--rows", type=int, default=12, metavar="N", help="rows to print (12)")
+    parser.add_argument("--plot", metavar="FILE", help="also draw the gain against St, as SVG or PNG")
+    parser.set_defaults(run=run)
+
+
+def _shots(text: str) -> tuple[int, ...]:
+    parts = text.split(",")
+    if not all(part.isdecimal() and int(part) > 0 for part in parts):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers of impacts")
+    return tuple(sorted(int(part) for part in parts))
+
+
+def run(args: argparse.Namespace) -> None:
+    """Print the ranked experiments, and draw them where asked."""
+    from restitution.calibration import design
+    from restitution.calibration.fit_result import read_fit
+    from restitution.errors import Defect, InputError
+    from restitution.files import write_whole
+
+    for option, value in (("--at", args.at), ("--e-sigma", args.e_sigma), ("--st-sigma", args.st_sigma)):
+        if value is not None and not 0 <= value < float("inf"):
+            raise InputError(Defect("must be positive and finite", field=option, value=f"{value:g}"))
+    if args.plot is not None and not args.plot.endswith((".svg", ".png")):
+        raise InputError(Defect("must end in .svg or .png", field="--plot", value=args.plot))
+    result = read_fit(args.fit)
+    options = design.candidates(args.pairs or design.PAIRS, tuple(args.height))
+    first = next((p.name for p in result.parameters if p.mean), None)
+    target = design.Target(None if args.at else args.parameter or first, args.at)
+    e_dry = args.e_dry if args.e_dry is not None else _typical_e_dry(result)
+    plan = design.Design(
+        result, target, e_dry, options[0].conditions, args.e_sigma, args.st_sigma, args.same_source
+    )
+    gains = plan.rank(options, args.shots, args.beyond)
+    if not gains:
+        raise InputError("no pair gives a Stokes number in the calibrated range: --height, --pairs, or --beyond")
+    if args.plot:
+        from restitution.report.design_plot import draw
+
+        drawing = draw(plan, gains, args.shots, target)
+        write_whole(args.plot, drawing.svg if args.plot.endswith(".svg") else drawing.png)
+    what = f"e_eff at St {args.at:g}" if args.at else target.parameter
+    show(f"standard error of {what} now: {plan.now:.3g}; after M impacts, as a fraction of it:")
+    _show(gains[: args.rows], args.shots)
+    if len(gains) > args.rows:
+        show(f"... {len(gains) - args.rows} more: --rows {len(gains)}")
+
+
+def _typical_e_dry(result) -> float | None:
+    """The middle of what the fitted impacts had, where e_dry was not estimated."""
+    low, high = result.e_dry_range
+    return 0.5 * (low + high) if high < 1.0 or low == high else None
+
+
+def _show(gains: list[Gain], shots: tuple[int, ...]) -> None:
+    headings = ("fluid", "sphere", "speed m/s", "St", "e_eff", *(f"M = {m}" for m in shots))
+    rows = [
+        (
+            gain.candidate.fluid,
+            gain.candidate.sphere,
+            f"{gain.candidate.speed:.3g}",
+            f"{gain.stokes:.3g}",
+            f"{gain.e_eff:.2f}",
+            *(f"{ratio:.2f}" for ratio in gain.ratio),
+        )
+        for gain in gains
+    ]
+    show_rows(headings, rows, right=headings[2:])

@@ -1,0 +1,118 @@
+"""``restitution predict``: e_eff with its interval for given fluid, sphere and speed, by a fit."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from restitution.commands import options
+from restitution.console import show, show_rows
+
+if TYPE_CHECKING:
+    from restitution.conditions import Conditions
+
+FLUID, SPHERE = ("density", "viscosity"), ("diameter", "density", "e_dry")
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    """Declare ``predict FIT --fluid ... --sphere ... [--speed ...]``."""
+    parser = commands.add_parser(
+        "predict",
+        help="e_eff with its interval for your fluid, sphere and speed, by a fit",
+        description="Predict e_eff by a fit that 'restitution fit --out' wrote.",
+    )
+    parser.add_argument("fit", metavar="FIT", help="the JSON of a fit")
+    parser.add_argument("--fluid", type=values, metavar="density=D,viscosity=MU", help="in kg/m3 and Pa s")
+    parser.add_argument("--sphere", type=values, metavar="diameter=D,density=RHO[,e_dry=E]", help="in m and kg/m3")
+    parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML instead")
+    parser.add_argument(
+        "--speed", type=numbers, metavar="V[,V...]", help="impact speeds in m/s, by the fit's definition"
+    )
+    parser.add_argument(
+        "--st", type=numbers, metavar="ST[,ST...]", help="Stokes numbers instead, by the fit's convention"
+    )
+    parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
+    parser.add_argument(
+        "--level",
+        action="append",
+        default=[],
+        type=options.pair,
+        metavar="COLUMN=NAME",
+        help="of separate parameters",
+    )
+    parser.set_defaults(run=run)
+
+
+def values(text: str) -> dict[str, float]:
+    """``key=number,key=number`` as an argument type."""
+    return dict(options.assignment(part.strip()) for part in text.split(","))
+
+
+def numbers(text: str) -> list[float]:
+    """Positive numbers separated by commas as an argument type."""
+    try:
+        found = [float(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers") from None
+    if not all(0 < x < float("inf") for x in found):
+        raise argparse.ArgumentTypeError(f"{text!r} must be positive and finite")
+    return found
+
+
+def conditions_of(args: argparse.Namespace) -> Conditions | None:
+    """The conditions from a file or from the options; None where none are given."""
+    from pydantic import ValidationError
+
+    from restitution.conditions import Conditions, defects_of, read_conditions
+    from restitution.errors import InputError
+
+    if args.conditions:
+        return read_conditions(args.conditions)
+    if args.fluid is None and args.sphere is None:
+        return None
+    given = {"fluid": args.fluid or {}, "sphere": args.sphere or {}}
+    try:
+        return Conditions.model_validate(given)
+    except ValidationError as error:
+        raise InputError(*defects_of(error, None)) from None
+
+
+def run(args: argparse.Namespace) -> None:
+    """Print e_eff and its intervals, one line a speed."""
+    import numpy as np
+
+    from restitution.calibration.fit_result import read_fit
+    from restitution.calibration.prediction import predict, stokes_of
+    from restitution.errors import Defect, InputError
+
+    result = read_fit(args.fit)
+    conditions = conditions_of(args)
+    if args.e_dry is not None and not 0 < args.e_dry <= 1:
+        raise InputError(Defect("must lie above 0 and be at most 1", field="--e-dry", value=f"{args.e_dry:g}"))
+    if args.st is not None:
+        St, speeds = np.array(args.st), None
+    elif conditions is None:
+        raise InputError(
+            "say what hits what: --fluid and --sphere, or --conditions FILE, or Stokes numbers by --st"
+        )
+    else:
+        per_speed = stokes_of(result, np.ones(1), conditions)[0]
+        low, high = result.stokes_range
+        speeds = np.array(args.speed) if args.speed else np.geomspace(low, high, 8) / per_speed
+        St = speeds * per_speed
+    found = predict(result, St, args.e_dry, conditions, dict(args.level))
+    rows = []
+    for i, x in enumerate(St):
+        ends = [
+            f"{max(low, 0):.3f} to {high:.3f}"
+            for table in (found.law, found.impact)
+            for low, high in (table[level][i] for level in table)
+        ]
+        speed = [] if speeds is None else [f"{speeds[i]:.4g}"]
+        rows.append((*speed, f"{x:.4g}", f"{found.value[i]:.3f}", *ends))
+    headings = ("St", "e_eff", *(f"law, {x}" for x in found.law), *(f"one impact, {x}" for x in found.impact))
+    show(f"{result.law.text}; Stokes number {result.stokes_convention}, speed {result.speed_definition}")
+    show_rows(headings if speeds is None else ("speed m/s", *headings), rows)
+    for warning in found.warnings:
+        print(f"warning: {warning}", file=sys.stderr)  # noqa: T201
