@@ -27,9 +27,9 @@ def variants(closures: Closures) -> dict[str, Closures]:
     found = {"nothing": closures}
     if closures.history is not None:
         found["history"] = replace(closures, history=None)
-        found["its decay at finite Re"] = replace(closures, history=Basset1888())
+        found["decay of history at finite Re"] = replace(closures, history=Basset1888())
     if closures.wake is not None:
-        found["its own wake"] = replace(closures, wake=None)
+        found["wake of the approach"] = replace(closures, wake=None)
     if closures.added_mass is not None:
         found["added mass"] = replace(closures, added_mass=None)
     if closures.added_mass == "wall":
