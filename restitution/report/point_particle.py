@@ -9,12 +9,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution import datasets, laws
 from restitution.bounce import Closures, OwnWake, Trajectory, bounce
 from restitution.bounce.agreement import release_of
 from restitution.bounce.sensitivity import forces_off
+from restitution.conditions import Conditions
+from restitution.impacts import find_impacts
 from restitution.report.drawing import Drawing, save, style
+from restitution.stokes import Speed
+from restitution.tracks import Track
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,40 +30,56 @@ _AFTER_S = 0.3
 
 @dataclass(frozen=True)
 class PointLine:
-    """A trajectory of the model for a record. ``time_s`` is counted from the first contact."""
+    """A trajectory of the model for a record, ``contact`` in words; times are counted from the first contact."""
 
     name: str
+    record: str
     contact: str
     path: Trajectory
 
     @property
-    def time_s(self) -> np.ndarray:
+    def conditions(self) -> Conditions:
+        """Those of the record."""
+        return self.path.conditions
+
+    @property
+    def time_s(self) -> NDArray:
+        """At the steps of the model."""
         return self.path.time_s - self.path.impacts[0].time_s
 
     @property
-    def contacts_s(self) -> np.ndarray:
+    def contacts_s(self) -> NDArray:
         """Times of all contacts."""
         return np.array([i.time_s for i in self.path.impacts]) - self.path.impacts[0].time_s
+
+    @property
+    def far_speed(self) -> float:
+        """Speed of the first approach outside the film, carried to the wall, as the record's camera has it."""
+        track, t = datasets.load_track(self.record), self.time_s
+        frame = float(np.median(np.diff(track.time_s)))
+        time = frame * (np.arange(np.ceil(t[0] / frame), np.floor(t[-1] / frame)) + 0.5)
+        filmed = Track(time, self.path.gap(time + self.path.impacts[0].time_s), "gap", track.sigma)
+        return float(find_impacts(filmed, self.conditions, Speed.FAR).rows[0]["impact_speed_m_s"])
 
 
 def closures() -> dict[str, tuple[str, Closures]]:
     """What is shown: the contact in words, and the closures."""
     return {
-        DRY: ("e_dry, cavitating film", Closures()),
-        DRY_WAKE: ("e_dry, cavitating film, wake", Closures(wake=OwnWake())),
+        DRY: ("e_dry, cavitating film, no wake", Closures()),
+        DRY_WAKE: ("e_dry, cavitating film, wake of the approach", Closures(wake=OwnWake())),
         RATIONAL: ("eq4_rational", Closures(rebound=laws.get("eq4_rational"))),
     }
 
 
-def lines(record: str) -> dict[str, PointLine]:
-    """The model's trajectories for a record, by name."""
+def lines(record: str) -> list[PointLine]:
+    """The model's trajectories for a record."""
     conditions, track = datasets.resource(record).conditions, datasets.load_track(record)
     release = release_of(track, conditions)
     end = float(np.ptp(track.time_s)) + _AFTER_S
-    return {
-        name: PointLine(name, contact, bounce(conditions, release, chosen, end))
+    return [
+        PointLine(name, record, contact, bounce(conditions, release, chosen, end))
         for name, (contact, chosen) in closures().items()
-    }
+    ]
 
 
 def physics(record: str) -> pd.DataFrame:
