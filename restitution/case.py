@@ -86,7 +86,8 @@ class ContactModel(Record):
     ``measured``, one value a bounce, "record" taking those of the record. ``dry``: e_dry at the film's floor.
     ``soft_linear``, ``soft_hertz``: a contact of e_dry stretched over ``duration_steps``.
 
-    ``added_mass`` is the fluid that is reversed with the sphere, over the fluid it displaces.
+    ``added_mass`` is the fluid that is reversed with the sphere, over the fluid it displaces: 0.803 in potential
+    flow about a sphere that touches a wall. By default it is what the lattice makes of that at its resolution.
     """
 
     mode: ContactMode
@@ -94,8 +95,7 @@ class ContactModel(Record):
     parameters: dict[str, float] = Field(default_factory=dict)
     measured: Literal["record"] | Annotated[tuple[Restitution, ...], Field(min_length=1)] | None = None
     duration_steps: Positive | None = None
-    added_mass: NonNegative = 0.8030853547
-    """Potential flow about a sphere that touches a plane wall, moving normal to it: (3/2) zeta(3) - 1."""
+    added_mass: NonNegative | None = None
 
 
 class Span(Record):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import lbm
-from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact
+from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
 from lbm.film import Film, lost_to_grid
 from lbm.observers import DivergenceGuard, FieldOutput
 from lbm.rates import PRESETS
@@ -292,7 +292,7 @@ def _contact(case: Case, flow: FlowScales, density: float) -> Contact | None:
     if c is None:
         return None
     displaced = math.pi / 6 * flow.length**3
-    carried = c.added_mass * displaced
+    carried = displaced * (lattice_added_mass(flow.length) if c.added_mass is None else c.added_mass)
     if c.mode == "dry":
         return DryRebound(e, carried)
     if c.mode != "effective":

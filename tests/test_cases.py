@@ -73,10 +73,10 @@ def test_base_and_record_give_way_to_the_case(tmp_path):
 
 
 def test_a_section_of_another_kind_replaces_that_of_the_base(tmp_path):
-    case = read(tmp_path, 'base = "gondret_st152_10_soft"\n[contact]\nmode = "dry"\n[film]\ncut_off_cells = 2.0\n')
+    case = read(tmp_path, 'base = "gondret_st152_10_soft"\n[contact]\nmode = "dry"\n[film]\nfloor = 1e-6\n')
     base = case_files.read_case("gondret_st152_10_soft")
     assert case.contact.duration_steps is None
-    assert case.film == base.film.model_copy(update={"cut_off_cells": 2.0})
+    assert case.film == base.film.model_copy(update={"floor": 1e-6})
     assert case_files.read_case("gondret_st152_10_measured").film.tension is None
 
 

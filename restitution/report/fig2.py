@@ -36,12 +36,17 @@ VERIFICATION = Path("benchmarks/sphere.json")
 
 
 class Check(BaseModel):
-    """One figure of the solver against one from outside, as the benchmarks write it."""
+    """One figure of the solver against one from outside, as ``benchmarks.sphere`` writes it.
+
+    ``error`` is relative, or absolute where the reference is 0; ``target`` is the magnitude that was aimed at.
+    """
 
     name: str
-    measured: float | str
-    reference: float | str
-    error: float | str
+    case: str = ""
+    measured: float
+    reference: float
+    error: float
+    target: float | None = None
     source: str
 
 

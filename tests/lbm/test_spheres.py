@@ -5,6 +5,7 @@
 
 import math
 
+import numba
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -135,6 +136,7 @@ def test_sphere_and_fluid_gain_the_momentum_that_its_weight_gives():
     assert total == pytest.approx(200 * weight, rel=0.02)
 
 
+@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
 def test_threads_do_not_change_a_bit():
     one, two = (_falling((0.2, 20.1, -0.3), shape=(24, 24, 24), threads=n) for n in (1, 2))
     assert np.array_equal(one[0].velocity, two[0].velocity)
