@@ -94,13 +94,12 @@ def test_stale_runs_are_shown_as_such(report):
 
 
 def test_point_particle_is_scored_by_the_measure_of_the_runs(report):
-    """Apex errors against the apexes stated with the record; the far speed is that of the filmed approach."""
+    """Apex errors against the apexes stated with the record; frames do not see all of the wall's brake."""
     scores = pd.read_csv(report / "out" / "scores.csv").set_index("case")
     for line in point_particle.lines(fig2.RECORD):
         row = scores.loc[line.name]
         assert row.apex_1_error == pytest.approx(line.path.apexes()[0] / 7.469e-3 - 1, abs=1e-4)
-        if line.path.closures.black_box:
-            assert row.approach_speed_m_s == pytest.approx(line.path.impacts[0].v_in, rel=0.01)
+        assert line.path.impacts[0].v_in < row.approach_speed_m_s < -line.path.velocity_m_s.min()
     assert scores.rms_gap_d[point_particle.DRY_WAKE] < scores.rms_gap_d[point_particle.DRY]
 
 

@@ -69,8 +69,8 @@ def draw(fig2: Fig2) -> Drawing:
                 continue
             label, colour, dashes = POINTS[line.name]
             look = {"color": colour, "ls": dashes, "lw": 1.1, "zorder": 2}
-            top.plot(line.time_s * 1e3, line.path.velocity_m_s, label=label, **look)
-            bottom.plot(line.time_s * 1e3, line.path.gap_m / d, **look)
+            top.plot(line.time_s * 1e3, line.velocity_m_s, label=label, **look)
+            bottom.plot(line.time_s * 1e3, line.gap_m / d, **look)
         for ax, values in zip((top, bottom), _published(fig2, published.contacts_s), strict=True):
             scale = 1 if ax is top else 1 / d
             ax.plot(
@@ -97,7 +97,7 @@ def draw(fig2: Fig2) -> Drawing:
         bottom.set_ylim(-0.1, 3.4)
         above = top.secondary_xaxis("top", functions=(lambda t: t * 1e-3 * star, lambda t: t / star * 1e3))
         above.set_xlabel(r"$t^*=t\,\sqrt{g/d}$  [-]")
-        top.legend(loc="upper right", fontsize=8.5)
+        top.legend(loc="upper right", fontsize=8.5, ncols=2)
         return save(figure)
 
 

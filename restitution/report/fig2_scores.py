@@ -63,7 +63,7 @@ def scores(
 
 
 def _line(line: PointLine, record: Bounces) -> dict[str, object]:
-    found = bounces(line.time_s, line.path.gap_m, line.contacts_s, 1e-3 * line.conditions.sphere.diameter)
+    found = bounces(line.time_s, line.gap_m, line.contacts_s, 1e-3 * line.conditions.sphere.diameter)
     row = {
         "case": line.name,
         "record": line.record,

@@ -6,6 +6,7 @@ The sphere is released as it was filmed: its first frame, at the mean speed of t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 DRY, DRY_WAKE, RATIONAL = "point_particle_dry", "point_particle_dry_wake", "point_particle_eq4_rational"
-_AFTER_S = 0.3
+_AFTER_S, _STEP_S = 0.3, 1e-4
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,21 @@ class PointLine:
         """Those of the record."""
         return self.path.conditions
 
-    @property
+    @cached_property
     def time_s(self) -> NDArray:
-        """At the steps of the model."""
-        return self.path.time_s - self.path.impacts[0].time_s
+        """The steps of the model, and times between where they are far apart."""
+        t = self.path.time_s
+        return np.sort(np.concatenate([t, np.arange(t[0], t[-1], _STEP_S)])) - self.path.impacts[0].time_s
+
+    @cached_property
+    def gap_m(self) -> NDArray:
+        """At ``time_s``."""
+        return self.path.gap(self.time_s + self.path.impacts[0].time_s)
+
+    @cached_property
+    def velocity_m_s(self) -> NDArray:
+        """At ``time_s``."""
+        return self.path.velocity(self.time_s + self.path.impacts[0].time_s)
 
     @property
     def contacts_s(self) -> NDArray:
@@ -55,9 +67,9 @@ class PointLine:
     @property
     def far_speed(self) -> float:
         """Speed of the first approach outside the film, carried to the wall, as the record's camera has it."""
-        track, t = datasets.load_track(self.record), self.time_s
+        track, t = datasets.load_track(self.record), self.time_s[[0, -1]]
         frame = float(np.median(np.diff(track.time_s)))
-        time = frame * (np.arange(np.ceil(t[0] / frame), np.floor(t[-1] / frame)) + 0.5)
+        time = frame * (np.arange(np.ceil(t[0] / frame), np.floor(t[1] / frame)) + 0.5)
         filmed = Track(time, self.path.gap(time + self.path.impacts[0].time_s), "gap", track.sigma)
         return float(find_impacts(filmed, self.conditions, Speed.FAR).rows[0]["impact_speed_m_s"])
 
