@@ -86,7 +86,7 @@ class Prediction:
             driven = t < 0
             since = t[driven] - begin
             gap[driven] = self.case.release.gap_d * d - self.release.drive.distance(since)
-            velocity[driven] = -self.release.drive.velocity(since)
+            velocity[driven] = 0.0 - self.release.drive.velocity(since)
         return pd.DataFrame({"time_s": t - self.first_s, "gap_m": gap, "velocity_m_s": velocity})
 
     @property
@@ -107,11 +107,10 @@ def closures_of(case: Case, file: str = "") -> Closures:
     """The closures that a case chooses; raises :class:`InputError` for what the model cannot do."""
     film, contact, place = case.film, case.contact, file or case.name
     tension = math.inf if film.tension is None else film.tension
-    resolved = Closures(lubrication=film.form != "none", contact=case.floor or 0.0, tension=tension)
-    if contact is None:
-        return replace(resolved, e_dry=0.0)  # the run ends where they touch
-    if contact.mode == "dry":
-        return resolved
+    e_dry = 0.0 if contact is None else case.sphere.e_dry  # without a contact the run ends where they touch
+    if contact is None or contact.mode == "dry":
+        lubrication = film.form != "none"
+        return Closures(lubrication=lubrication, contact=case.floor or 0.0, tension=tension, e_dry=e_dry)
     if contact.mode != "effective":
         rule = "stretches a contact in time, which takes none for a point particle: use 'dry' or 'effective'"
         raise InputError(Defect(rule, place, None, "contact.mode", contact.mode))
@@ -119,7 +118,7 @@ def closures_of(case: Case, file: str = "") -> Closures:
         measured = measured_restitution(case.record) if contact.measured == "record" else contact.measured
         return Closures(measured=measured)
     try:
-        return Closures(rebound=laws.get(contact.law, **contact.parameters))
+        return Closures(rebound=laws.get(contact.law, **contact.parameters), e_dry=e_dry)
     except InputError as error:
         raise _at(error, place) from None
 
