@@ -141,8 +141,10 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
 def from_table(table: pd.DataFrame, how: Reading, file: str, digest: str) -> Observations:
     """Observations of a table that has some of the columns of the schema; row 2 of the file is its first."""
     table = table.reindex(columns=list(dict.fromkeys([*read_schema(SCHEMA).columns, *table.columns])))
+    # A text column that the table lacks would be one of numbers, and take no text in its place.
+    table = table.astype({f.name: object for f in read_schema(SCHEMA).fields if f.type == "string"})
     rows = np.arange(len(table)) + 2
-    use = (table["kind"] != "simulated").fillna(True).to_numpy(bool)
+    use = np.array([kind != "simulated" for kind in table["kind"]], bool)
     table, rows = table[use].reset_index(drop=True), rows[use]
     defects = [
         Defect("must be positive; leave the cell empty where it is not known", file, int(rows[i]), name, f"{x:g}")
