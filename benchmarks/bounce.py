@@ -8,6 +8,7 @@ are plain least squares, all frames of all records alike; intervals are not thei
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -23,6 +24,7 @@ from restitution.bounce.agreement import Agreement, agreement, release_of
 from restitution.bounce.sensitivity import forces_off
 from restitution.conditions import Conditions
 from restitution.impact_speed import H_FILM
+from restitution.laws.cavitation import ATMOSPHERE
 from restitution.tracks import Track
 
 GONDRET = ("gondret2002_st152", "gondret2002_st27")
@@ -93,8 +95,20 @@ def published(everything: list[Record]) -> Iterable[Table]:
         made = table(f"as published; history: {kernel or 'none'}", "rebound", everything)
         for name in REBOUND:
             made.add_row(name, *cells(everything, Closures(rebound=laws.get(name), history=history)))
-        made.add_row("e_dry, film resolved", *cells(everything, Closures(history=history)))
+        for what, tension in (("cavitates at 1 atm", ATMOSPHERE), ("holds", math.inf)):
+            made.add_row(f"e_dry, film {what}", *cells(everything, Closures(history=history, tension=tension)))
         yield made
+
+
+def resolved_film(everything: list[Record]) -> Table:
+    """The dry rebound under a film that holds any suction, or cavitates at a tension; with the wake or without."""
+    made = table("dry restitution, film resolved: nothing fitted but A = 2 of the wake", "film", everything)
+    for wake in (None, OwnWake()):
+        for tension in (math.inf, 2 * ATMOSPHERE, ATMOSPHERE, ATMOSPHERE / 2):
+            bears = "holds" if math.isinf(tension) else f"cavitates at {tension / ATMOSPHERE:g} atm"
+            what = f"{bears}, wake" if wake else bears
+            made.add_row(what, *cells(everything, Closures(tension=tension, wake=wake)))
+    return made
 
 
 def fitted(everything: list[Record]) -> Table:
@@ -151,7 +165,8 @@ def speed(record: Record) -> Table:
         "rebound law": Closures(rebound=law),
         "rebound law, no history": Closures(rebound=law, history=None),
         "rebound law, wake": Closures(rebound=law, wake=OwnWake()),
-        "film resolved": Closures(),
+        "film resolved, cavitates": Closures(),
+        "film resolved, holds": Closures(tension=math.inf),
     }.items():
         took = []
         for _ in range(31):
@@ -167,6 +182,7 @@ def main() -> None:
     console, everything = Console(width=200), records()
     for made in published(everything):
         console.print(made)
+    console.print(resolved_film(everything))
     console.print(fitted(everything))
     eq4 = Closures(rebound=laws.get("eq4_exponential", K=10.9), wake=OwnWake())
     console.print(
@@ -174,6 +190,7 @@ def main() -> None:
     )
     console.print(switched_off(everything[0], eq4, "Eq. (4) with K = 10.9, wake"))
     console.print(switched_off(everything[0], Closures(), "film resolved, e_dry"))
+    console.print(switched_off(everything[0], Closures(wake=OwnWake()), "film resolved, e_dry, wake"))
     console.print(switched_off(everything[-1], replace(eq4, wake=None), "Eq. (4) with K = 10.9"))
     console.print(speed(everything[0]))
 

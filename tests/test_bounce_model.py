@@ -207,7 +207,7 @@ def test_every_force_matters_in_its_sense():
     table = forces_off(GONDRET, RELEASE, Closures(), 0.3, RECORD).set_index("off")
     for force in ("history", "resistance of the wall", "lubrication", "steady drag"):
         assert table.apex_1_change[force] > 0.05
-    assert table.apex_1_change["its decay at finite Re"] < 0
+    assert table.apex_1_change["decay of history at finite Re"] < 0
     assert table.rms_d.notna().all()
     assert table.change_d["nothing"] == 0
 

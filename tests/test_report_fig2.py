@@ -10,7 +10,7 @@ import pytest
 from restitution import case_files, datasets
 from restitution.cli import main
 from restitution.flow_pictures import FlowFrames, Frame
-from restitution.report import fig1, fig2
+from restitution.report import fig1, fig2, point_particle
 from restitution.run_key import run_key
 from restitution.simulate import csv, simulated_impacts
 
@@ -89,7 +89,27 @@ def test_page_loads_nothing_and_shows_all(report):
 
 def test_stale_runs_are_shown_as_such(report):
     scores = pd.read_csv(report / "out" / "scores.csv").set_index("case")
-    assert scores.stale.to_dict() == dict.fromkeys(fig2.SHORT, False) | {"gondret_st152_16": True}
+    assert scores.stale.to_dict() == dict.fromkeys((*fig2.SHORT, *point_particle.closures()), False) | {
+        "gondret_st152_16": True
+    }
+
+
+def test_point_particle_is_scored_by_the_measure_of_the_runs(report):
+    """Apex errors against the apexes stated with the record; frames do not see all of the wall's brake."""
+    scores = pd.read_csv(report / "out" / "scores.csv").set_index("case")
+    for line in point_particle.lines(fig2.RECORD):
+        row = scores.loc[line.name]
+        assert row.apex_1_error == pytest.approx(line.path.apexes()[0] / 7.469e-3 - 1, abs=1e-4)
+        assert line.path.impacts[0].v_in < row.approach_speed_m_s < -line.path.velocity_m_s.min()
+    assert scores.rms_gap_d[point_particle.DRY_WAKE] < scores.rms_gap_d[point_particle.DRY]
+
+
+def test_the_record_says_that_history_matters(report):
+    off = pd.read_csv(report / "out" / "physics.csv").set_index("off")
+    assert off.rms_d["history"] > 10 * off.rms_d["nothing"]
+    assert (off.rms_d >= off.rms_d["nothing"]).all()
+    page = (report / "out" / "index.html").read_text()
+    assert all(name in page for name in (*off.index, *point_particle.closures()))
 
 
 def test_second_report_gives_the_same_bytes(report, tmp_path):

@@ -18,11 +18,13 @@ the wall does to the added mass, :mod:`~restitution.bounce.wake` what a rebound 
 """
 
 from restitution.bounce.closures import Closures, Release, terminal_speed
+from restitution.bounce.drive import Drive
 from restitution.bounce.model import Impact, IntegrationError, Trajectory, bounce
 from restitution.bounce.wake import OwnWake
 
 __all__ = [
     "Closures",
+    "Drive",
     "Impact",
     "IntegrationError",
     "OwnWake",

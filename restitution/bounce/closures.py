@@ -7,11 +7,16 @@ from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.bounce.drive import Drive
 from restitution.bounce.wake import OwnWake
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.impact_speed import H_FILM
 from restitution.laws.brenner_1961 import Brenner1961
+from restitution.laws.cavitation import ATMOSPHERE
 from restitution.laws.drag import DragLaw, SchillerNaumann1935, steady
 from restitution.laws.film import YangHunt2008
 from restitution.laws.history import DorganLoth2007, HistoryLaw
@@ -29,11 +34,12 @@ class Closures:
 
     The viscous loss near the wall is accounted for in one of two ways, never in both:
 
-    - with a ``rebound`` law the film, gap < ``film`` d, is a black box: no viscous force acts inside, only gravity
-      and added mass, and the law's e_eff multiplies the speed with which the motion outside, so carried on, meets
-      the wall. That is the ``far`` speed of :mod:`restitution.impact_speed`;
-    - without one, all forces act down to the gap ``contact``, where the sphere rebounds with the dry restitution.
-      ``lubrication=False`` then keeps the resistance of the wall at its value at the edge of the film.
+    - with a ``rebound`` law or ``measured`` values the film, gap < ``film`` d, is a black box: no viscous force
+      acts inside, only gravity and added mass, and e_eff multiplies the speed with which the motion outside, so
+      carried on, meets the wall. That is the ``far`` speed of :mod:`restitution.impact_speed`;
+    - with neither, all forces act down to the gap ``contact``, where the sphere rebounds with the dry restitution.
+      On its way out the film holds no more than ``tension`` (:mod:`restitution.laws.cavitation`).
+      ``lubrication=False`` keeps the resistance of the wall at its value at the edge of the film.
     """
 
     drag: DragLaw | None = field(default_factory=SchillerNaumann1935)
@@ -46,8 +52,12 @@ class Closures:
     wake: OwnWake | None = None
     """The fluid that an approach leaves moving, met by the rebound; not of the literature, so off by default."""
     rebound: ReboundLaw | None = None
+    measured: tuple[float, ...] | None = None
+    """e_eff of bounce 1, 2, ... in place of a law; after the last of them the sphere rests."""
     lubrication: bool | None = None
-    """Whether the film is resolved; by default where there is no rebound law."""
+    """Whether the film is resolved; by default where there is no e_eff, by law or measured."""
+    tension: float = ATMOSPHERE
+    """Tension in Pa at which a resolved film cavitates while the sphere leaves; inf: it holds any."""
     e_dry: float | None = None
     """Dry restitution, by default that of the conditions."""
     contact: float | None = None
@@ -61,13 +71,24 @@ class Closures:
 
     def __post_init__(self) -> None:
         if self.lubrication is None:
-            object.__setattr__(self, "lubrication", self.rebound is None)
-        if self.rebound is not None and self.lubrication:
+            object.__setattr__(self, "lubrication", not self.black_box)
+        if self.rebound is not None and self.measured is not None:
+            raise InputError(
+                Defect(
+                    "stands beside a rebound law: give the one or the other",
+                    field="measured",
+                    value=self.rebound.name,
+                )
+            )
+        for n, e in enumerate(self.measured or (), 1):
+            if not 0 <= e <= 1:
+                raise InputError(Defect(f"must lie in [0, 1] at bounce {n}", field="measured", value=f"{e:g}"))
+        if self.black_box and self.lubrication:
             raise InputError(
                 Defect(
                     "counts the loss in the film twice beside a resolved film: leave the one or the other out",
-                    field="rebound",
-                    value=self.rebound.name,
+                    field="rebound" if self.rebound is not None else "measured",
+                    value=getattr(self.rebound, "name", None),
                 )
             )
         if self.rebound is not None and self.rebound.speed is Speed.FILM_EDGE:
@@ -81,16 +102,21 @@ class Closures:
             )
         bounds = {
             "e_dry": (0.0, 1.0), "contact": (0.0, math.inf),
-            "reduced_modulus": (1.0, math.inf), "film": (0.0, 10.0),
+            "reduced_modulus": (1.0, math.inf), "tension": (1.0, math.inf), "film": (0.0, 10.0),
         }  # fmt: skip
         for name, (low, high) in bounds.items():
             value = getattr(self, name)
             if value is not None and not low <= value <= high:  # also NaN
                 raise InputError(Defect(f"must lie in [{low:g}, {high:g}]", field=name, value=f"{value:g}"))
 
+    @property
+    def black_box(self) -> bool:
+        """Whether e_eff stands for the film, by a law or as measured."""
+        return self.rebound is not None or self.measured is not None
+
     def contact_gap(self, conditions: Conditions, speed: float = 0.0) -> float:
-        """Gap in m at which bodies that enter the film with ``speed`` touch; 0 with a rebound law."""
-        if self.rebound is not None:
+        """Gap in m at which bodies that enter the film with ``speed`` touch; 0 where e_eff stands for the film."""
+        if self.black_box:
             return 0.0
         rough = self.film_limit(conditions)
         if self.reduced_modulus is None or speed <= 0:
@@ -125,13 +151,17 @@ class Release:
 
     ``developed``: the sphere has moved at this speed for so long that its wake is steady and the history force
     zero; otherwise the fluid was at rest until the start. By default developed where the speed is not zero.
+    ``drive``: the sphere was moved up to here; the speed and what the history force remembers follow from it.
     """
 
     gap: float
     speed: float = 0.0
     developed: bool | None = None
+    drive: Drive | None = None
 
     def __post_init__(self) -> None:
+        if self.drive is not None:
+            object.__setattr__(self, "speed", float(self.drive.velocity(self.drive.duration)))
         for name, low in (("gap", 0.0), ("speed", -math.inf)):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= low):
@@ -140,6 +170,12 @@ class Release:
                 )
         if self.developed is None:
             object.__setattr__(self, "developed", self.speed != 0)
+
+    def lagged(self, rates: NDArray) -> NDArray:
+        """The velocities in m/s at which the history terms of ``rates`` (1/s) start."""
+        if self.drive is not None:
+            return self.drive.lagged(rates)
+        return np.full(len(rates), -self.speed if self.developed else 0.0)
 
 
 def excess_weight(conditions: Conditions) -> float:

@@ -13,6 +13,7 @@ from restitution.bounce.closures import Closures, excess_weight, terminal_speed
 from restitution.bounce.kernel import Forces
 from restitution.bounce.tables import Table, constant, tabulate
 from restitution.conditions import Conditions
+from restitution.laws.cavitation import film_edge
 from restitution.laws.drag import DragLaw
 from restitution.laws.history import FiniteReynolds, HistoryLaw
 from restitution.laws.resistance import ResistanceLaw
@@ -82,6 +83,7 @@ def _force_numbers(conditions: Conditions, closures: Closures, end: float) -> Fo
         floor=closures.contact_gap(c) if closures.lubrication else closures.film * sphere.diameter,
         drag=drag_table(closures.drag),
         wall=wall_table(closures.wall),
+        tear=film_edge(fluid.viscosity, 1.0, r, closures.tension) ** 2 if closures.wall is not None else 0.0,
         added_mass=added_mass_table(closures.added_mass),
         memory=np.ascontiguousarray(share[:, keep]),
         memory_slope=np.ascontiguousarray(slope[:, keep]),

@@ -49,6 +49,8 @@ class Forces(NamedTuple):
     """C_D Re/24 against Re."""
     wall: Table
     """eps (lambda - 1) against eps."""
+    tear: float
+    """eta^2/v of the film that cavitates on rebound: 3 mu/(p_c r); 0 where it holds any tension."""
     added_mass: Table
     """C_M against eps."""
     memory: NDArray
@@ -136,6 +138,21 @@ def _wake(wake, radius, t, h):
 
 
 @njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+def _wall(f, h, v):
+    """lambda - 1 at a gap and velocity, and the slope of (lambda - 1) v in v.
+
+    Below eta = sqrt(tear v) a sphere that leaves has the cavitating film's (2 - eps/eta)/eta in place of 1/eps
+    (restitution.laws.cavitation): less by (1 - eps/eta)^2/eps, and that times v has the slope (1 - eps/eta)/eps.
+    """
+    eps = max(h, f.floor) / f.radius
+    held = _look(f.wall, math.log(eps))[0] / eps
+    if v <= 0 or eps * eps >= f.tear * v:
+        return held, held
+    torn = 1 - eps / math.sqrt(f.tear * v)
+    return held - torn * torn / eps, held - torn / eps
+
+
+@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _forces(f, wake, inviscid, t, h, v, Z_explicit, g, Z, share):
     """Drag, force of the wall, history force (all against the motion), and the slope in v of their sum.
 
@@ -146,8 +163,7 @@ def _forces(f, wake, inviscid, t, h, v, Z_explicit, g, Z, share):
     factor, d_factor = _look(f.drag, math.log(Re))
     drag = f.stokes * factor * relative
     slope = f.stokes * (factor + d_factor)
-    eps = max(h, f.floor) / f.radius
-    wall_factor = _look(f.wall, math.log(eps))[0] / eps * f.stokes
+    wall, wall_slope = _wall(f, h, v)
     memory, memory_slope = 0.0, 0.0
     if f.history > 0:
         _share(f, math.log(max(abs(v) * f.reynolds_per_speed, 1e-12)), share)
@@ -158,7 +174,8 @@ def _forces(f, wake, inviscid, t, h, v, Z_explicit, g, Z, share):
             memory_slope += f.weights[j] * share[j] * left
     if inviscid:
         return 0.0, 0.0, 0.0, 0.0
-    return drag, wall_factor * v, f.history * memory, slope + wall_factor + f.history * memory_slope
+    slope += f.stokes * wall_slope + f.history * memory_slope
+    return drag, f.stokes * wall * v, f.history * memory, slope
 
 
 @njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)

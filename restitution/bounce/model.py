@@ -179,7 +179,7 @@ class _Run:
         self.forces: Forces = forces(conditions, closures, end)
         self.edge = closures.film * conditions.sphere.diameter
         self.t, self.h, self.v = 0.0, float(release.gap), -float(release.speed)
-        self.Z = np.full(len(self.forces.rates), self.v if release.developed else 0.0)
+        self.Z = release.lagged(self.forces.rates)
         if not release.developed:
             self.v = self._shared(self.v, 0.0, self.h)
         self.inside = self.h < self.edge
@@ -198,7 +198,7 @@ class _Run:
         if self.edge <= self.touch:
             low, high = self.touch, math.inf
         out, works = np.empty((_ROWS, 3)), np.zeros((_ROWS, 3))
-        black_box = self.inside and self.closures.rebound is not None
+        black_box = self.inside and self.closures.black_box
         n, why = fly(
             self.forces, self.wake, black_box, self.t, self.end, self.h, self.v, self.Z, low, high,
             self.dt, 3.0, self.tolerance, out, works,
@@ -256,7 +256,10 @@ class _Run:
         return float(v - share * (v - before))
 
     def _restitution(self, v_in: float) -> float:
-        law, e_dry = self.closures.rebound, self.closures.dry(self.conditions)
+        law, measured, count = self.closures.rebound, self.closures.measured, len(self.impacts)
+        if measured is not None:
+            return measured[count] if count < len(measured) else 0.0
+        e_dry = self.closures.dry(self.conditions)
         if law is None:
             return e_dry
         St = StokesNumber.from_speed(v_in, self.conditions).read_as(law.speed)

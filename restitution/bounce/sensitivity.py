@@ -27,9 +27,9 @@ def variants(closures: Closures) -> dict[str, Closures]:
     found = {"nothing": closures}
     if closures.history is not None:
         found["history"] = replace(closures, history=None)
-        found["its decay at finite Re"] = replace(closures, history=Basset1888())
+        found["decay of history at finite Re"] = replace(closures, history=Basset1888())
     if closures.wake is not None:
-        found["its own wake"] = replace(closures, wake=None)
+        found["wake of the approach"] = replace(closures, wake=None)
     if closures.added_mass is not None:
         found["added mass"] = replace(closures, added_mass=None)
     if closures.added_mass == "wall":
@@ -38,8 +38,10 @@ def variants(closures: Closures) -> dict[str, Closures]:
         found["resistance of the wall"] = replace(closures, wall=None)
     if closures.lubrication:
         found["lubrication"] = replace(closures, lubrication=False)
-    if closures.rebound is not None:
-        found["loss by e_eff"] = replace(closures, rebound=None, lubrication=False)
+        if math.isfinite(closures.tension):
+            found["cavitation of the film"] = replace(closures, tension=math.inf)
+    if closures.black_box:
+        found["loss by e_eff"] = replace(closures, rebound=None, measured=None, lubrication=False)
     if closures.drag is not None:
         found["steady drag"] = replace(closures, drag=None)
     return found

@@ -21,6 +21,7 @@ from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.kept_runs import FOLDER, KeptRun, ensure, read_run
 from restitution.report.fig2_scores import scores
+from restitution.report.point_particle import PointLine, draw_physics, lines, physics
 from restitution.simulate import StoppedError, csv
 
 if TYPE_CHECKING:
@@ -51,13 +52,15 @@ class Check(BaseModel):
 
 @dataclass(frozen=True)
 class Fig2:
-    """The kept runs by case, their scores, the records as filmed, and the solver's verification."""
+    """The kept runs by case, scores, the records as filmed, and the solver's verification."""
 
     runs: dict[str, KeptRun]
     scores: pd.DataFrame
     records: dict[str, Bounces]
     checks: list[Check]
     failed: dict[str, str] = field(default_factory=dict)
+    lines: list[PointLine] = field(default_factory=list)
+    """The point-particle model on the main record."""
 
 
 def gather(
@@ -88,7 +91,8 @@ def gather(
         if resource.table == "trajectory" and resource.conditions.sphere.e_dry is not None:
             first = 0.0 if resource.kind == "simulated" else None  # its zero is the end of its stretched contact
             records[name] = filmed(datasets.load_track(name), resource.conditions, first)
-    return Fig2(found, scores(found, records), records, _checks(Path(verification)), failed)
+    points = lines(RECORD)
+    return Fig2(found, scores(found, records, points), records, _checks(Path(verification)), failed, points)
 
 
 def _checks(path: Path) -> list[Check]:
@@ -117,13 +121,17 @@ def write(
     fig2 = gather(runs, verification, full, fresh, show)
     figure, others = fig2_plot.draw(fig2), fig2_plot.draw_records(fig2)
     flow = fig2_plot.draw_flow(fig2)
+    off = physics(RECORD)
+    forces = draw_physics(off)
     impacts = [run.impacts for run in fig2.runs.values() if len(run.impacts)]
     files: dict[str, str | bytes] = {
         "figure.svg": figure.svg,
         "figure.png": figure.png,
         "scores.csv": csv(fig2.scores, "%.5g"),
         "impacts.csv": csv(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
-        "index.html": fig2_page.render(fig2, figure, others, flow),
+        "physics.csv": csv(off, "%.5g"),
+        "physics.png": forces.png,
+        "index.html": fig2_page.render(fig2, figure, others, flow, off, forces),
     }
     files |= {"records.png": others.png} if others is not None else {}
     files |= {"flow.png": flow.png} if flow is not None else {}

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from restitution.kept_runs import KeptRun
     from restitution.report.drawing import Drawing
     from restitution.report.fig2 import Fig2
+    from restitution.report.point_particle import PointLine
 
 DEFINITIONS = tuple(str(s) for s in (Speed.FAR, Speed.CONTACT, Speed.WINDOW))
 SENSITIVITY = (
@@ -41,7 +42,9 @@ SENSITIVITY = (
 """What is varied, and the cases; changes are from the first."""
 
 
-def render(fig2: Fig2, figure: Drawing, others: Drawing | None, flow: Drawing | None) -> str:
+def render(
+    fig2: Fig2, figure: Drawing, others: Drawing | None, flow: Drawing | None, off: pd.DataFrame, forces: Drawing
+) -> str:
     """The whole page as text."""
     record = datasets.resource(content.RECORD)
     table = fig2.scores.set_index("case")
@@ -64,6 +67,8 @@ def render(fig2: Fig2, figure: Drawing, others: Drawing | None, flow: Drawing | 
         predictions=[_bounce_row(fig2, table, run) for run in fig2.runs.values() if run.case.record is None],
         other_records=[_bounce_row(fig2, table, run) for run in _of_other_records(fig2)],
         settling=_settling(fig2, table),
+        physics=_physics(off),
+        forces=forces.svg,
         numerics=[_numerics(run) for run in fig2.runs.values()],
         checks=[_check(c) for c in fig2.checks],
         verification=str(content.VERIFICATION),
@@ -80,7 +85,8 @@ def _main(fig2: Fig2, table: pd.DataFrame) -> list[dict]:
         _record_row(fig2, content.PUBLISHED, "published simulation"),
     ]
     runs = [run for run in fig2.runs.values() if run.case.record == content.RECORD]
-    return rows + [_bounce_row(fig2, table, run) for run in runs]
+    rows += [_bounce_row(fig2, table, run) for run in runs]
+    return rows + [_line_row(table, line) for line in fig2.lines]
 
 
 def _record_row(fig2: Fig2, name: str, kind: str) -> dict:
@@ -113,6 +119,17 @@ def _with_error(values: np.ndarray, goals: np.ndarray, k: int, scale: float, own
 
 def _bounce_row(fig2: Fig2, table: pd.DataFrame, run: KeptRun) -> dict:
     row = table.loc[run.case.name]
+    about = {"cells": f"{row['cells_per_diameter']:g}", "made": run.made_with, "stale": run.stale}
+    return _scored(row, run.case.name) | about
+
+
+def _line_row(table: pd.DataFrame, line: PointLine) -> dict:
+    about = {"cells": "", "made": "point-particle model, at once", "stale": False}
+    return _scored(table.loc[line.name], line.name) | about
+
+
+def _scored(row: pd.Series, name: str) -> dict:
+    """A row of the scores as the table of bounces has it."""
 
     def cells(what: str, unit: str) -> list[str]:
         found = []
@@ -123,16 +140,30 @@ def _bounce_row(fig2: Fig2, table: pd.DataFrame, run: KeptRun) -> dict:
         return found
 
     return {
-        "name": run.case.name,
+        "name": name,
         "contact": row["contact"],
-        "cells": f"{row['cells_per_diameter']:g}",
         "v": _number(row["approach_speed_m_s"], 3),
         "apexes": cells("apex", "m"),
         "intervals": cells("interval", "s"),
         "rms": _number(row["rms_gap_d"], 3),
-        "made": run.made_with,
-        "stale": run.stale,
     }
+
+
+def _physics(off: pd.DataFrame) -> list[dict]:
+    """Each force off: first apex, changes of the first three, distance from the whole model and the frames."""
+    rows = []
+    for row in off.itertuples():
+        changes = (row.apex_1_change, row.apex_2_change, row.apex_3_change)
+        rows.append(
+            {
+                "off": row.off,
+                "apex": f"{row.apex_1_m * 1e3:.2f}",
+                "changes": [_percent(c) if row.Index else "" for c in changes],
+                "whole": f"{row.change_d:.3f}",
+                "rms": f"{row.rms_d:.3f}",
+            }
+        )
+    return rows
 
 
 def _of_other_records(fig2: Fig2) -> list[KeptRun]:

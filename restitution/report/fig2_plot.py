@@ -11,6 +11,7 @@ from restitution import datasets
 from restitution.bounces import frame_velocity
 from restitution.flow_pictures import MOMENTS
 from restitution.report.drawing import Drawing, save, style
+from restitution.report.point_particle import DRY, RATIONAL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +28,10 @@ LINES = {
     ),
     "gondret_st152_10": ("simulation, contact (b): $e_{dry}$, film resolved", "#000000", "-"),
     "gondret_st152_10_soft": ("simulation, contact (c): soft, stretched", "#0072B2", (0, (1, 1.2))),
+}
+POINTS = {
+    DRY: ("point particle: $e_{dry}$, cavitating film", "#009E73", (0, (3, 1, 1, 1))),
+    RATIONAL: ("point particle: Eq. (4), rational", "#CC79A7", (0, (7, 1.5, 1, 1.5))),
 }
 PUBLISHED_LINE = {"color": "#888888", "lw": 1.0, "marker": "D", "ms": 3, "mfc": "#cccccc", "mec": "#888888"}
 MEASURED = {
@@ -59,6 +64,13 @@ def draw(fig2: Fig2) -> Drawing:
             look = {"color": colour, "ls": dashes, "zorder": 3}
             top.plot(run.velocity.time_s * 1e3, run.velocity.velocity_m_s, label=label, **look)
             bottom.plot(run.trajectory.time_s * 1e3, run.trajectory.gap_m / d, **look)
+        for line in fig2.lines:
+            if line.name not in POINTS:
+                continue
+            label, colour, dashes = POINTS[line.name]
+            look = {"color": colour, "ls": dashes, "lw": 1.1, "zorder": 2}
+            top.plot(line.time_s * 1e3, line.velocity_m_s, label=label, **look)
+            bottom.plot(line.time_s * 1e3, line.gap_m / d, **look)
         for ax, values in zip((top, bottom), _published(fig2, published.contacts_s), strict=True):
             scale = 1 if ax is top else 1 / d
             ax.plot(
@@ -85,7 +97,7 @@ def draw(fig2: Fig2) -> Drawing:
         bottom.set_ylim(-0.1, 3.4)
         above = top.secondary_xaxis("top", functions=(lambda t: t * 1e-3 * star, lambda t: t / star * 1e3))
         above.set_xlabel(r"$t^*=t\,\sqrt{g/d}$  [-]")
-        top.legend(loc="upper right", fontsize=8.5)
+        top.legend(loc="upper right", fontsize=8.5, ncols=2)
         return save(figure)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,8 @@ from restitution.kept_runs import KeptRun
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from restitution.report.point_particle import PointLine
 
 BOUNCES = 3
 """Bounces whose apex and interval are scored."""
@@ -47,11 +49,31 @@ def reference_apexes(record: str, found: Bounces) -> np.ndarray:
     return np.asarray(quoted if quoted is not None else found.apexes_m, float)
 
 
-def scores(runs: Mapping[str, KeptRun], records: Mapping[str, Bounces]) -> pd.DataFrame:
-    """One row a run; errors are relative, but the gap's, which is in diameters. Empty cells: not measured."""
+def scores(
+    runs: Mapping[str, KeptRun], records: Mapping[str, Bounces], lines: Iterable[PointLine] = ()
+) -> pd.DataFrame:
+    """One row a run or a line of the point-particle model; errors are relative, but the gap's, in diameters.
+
+    Empty cells: not measured, or no grid.
+    """
     import pandas as pd
 
-    return pd.DataFrame([_row(run, records.get(run.case.record or "")) for run in runs.values()])
+    rows = [_row(run, records.get(run.case.record or "")) for run in runs.values()]
+    return pd.DataFrame(rows + [_line(line, records[line.record]) for line in lines])
+
+
+def _line(line: PointLine, record: Bounces) -> dict[str, object]:
+    found = bounces(line.time_s, line.gap_m, line.contacts_s, 1e-3 * line.conditions.sphere.diameter)
+    row = {
+        "case": line.name,
+        "record": line.record,
+        "contact": line.contact,
+        "floor_m": line.path.closures.contact_gap(line.conditions) or math.nan,
+        "approach_speed_m_s": line.far_speed,
+    }
+    row |= _bounce_by_bounce(found, record, line.record)
+    row["rms_gap_d"] = gap_error_d(found, record, line.conditions)
+    return row | {"steps": len(line.path.time_s) - 1, "threads": 1, "stale": False}
 
 
 def _row(run: KeptRun, record: Bounces | None) -> dict[str, object]:
@@ -70,13 +92,7 @@ def _row(run: KeptRun, record: Bounces | None) -> dict[str, object]:
         "floor_m": case.floor,
         "approach_speed_m_s": float(far.impact_speed_m_s.iloc[0]) if len(far) else math.nan,
     }
-    apexes = found.apexes_m if found is not None else np.empty(0)
-    intervals = found.intervals_s if found is not None else np.empty(0)
-    goal = reference_apexes(case.record, record) if record is not None else np.empty(0)
-    pace = record.intervals_s if record is not None else np.empty(0)
-    for k in range(BOUNCES):
-        row[f"apex_{k + 1}_m"], row[f"apex_{k + 1}_error"] = _against(apexes, goal, k)
-        row[f"interval_{k + 1}_s"], row[f"interval_{k + 1}_error"] = _against(intervals, pace, k)
+    row |= _bounce_by_bounce(found, record, case.record)
     both = found is not None and record is not None
     row["rms_gap_d"] = gap_error_d(found, record, case.conditions) if both else math.nan
     row |= _settling(run)
@@ -89,6 +105,19 @@ def _row(run: KeptRun, record: Bounces | None) -> dict[str, object]:
         "key": run.about.key,
         "stale": run.stale,
     }
+
+
+def _bounce_by_bounce(found: Bounces | None, record: Bounces | None, name: str | None) -> dict[str, float]:
+    """Apexes and times between contacts, and their errors where the record has them."""
+    apexes = found.apexes_m if found is not None else np.empty(0)
+    intervals = found.intervals_s if found is not None else np.empty(0)
+    goal = reference_apexes(name, record) if record is not None else np.empty(0)
+    pace = record.intervals_s if record is not None else np.empty(0)
+    row: dict[str, float] = {}
+    for k in range(BOUNCES):
+        row[f"apex_{k + 1}_m"], row[f"apex_{k + 1}_error"] = _against(apexes, goal, k)
+        row[f"interval_{k + 1}_s"], row[f"interval_{k + 1}_error"] = _against(intervals, pace, k)
+    return row
 
 
 def _against(values: np.ndarray, references: np.ndarray, k: int) -> tuple[float, float]:

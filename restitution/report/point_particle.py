@@ -1,0 +1,124 @@
+"""The point-particle model in the Fig. 2 report: its lines for a record, their scores, and each force off in turn.
+
+The sphere is released as it was filmed: its first frame, at the mean speed of the approach.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution import datasets, laws
+from restitution.bounce import Closures, OwnWake, Trajectory, bounce
+from restitution.bounce.agreement import release_of
+from restitution.bounce.sensitivity import forces_off
+from restitution.conditions import Conditions
+from restitution.impacts import find_impacts
+from restitution.report.drawing import Drawing, save, style
+from restitution.stokes import Speed
+from restitution.tracks import Track
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DRY, DRY_WAKE, RATIONAL = "point_particle_dry", "point_particle_dry_wake", "point_particle_eq4_rational"
+_AFTER_S, _STEP_S = 0.3, 1e-4
+
+
+@dataclass(frozen=True)
+class PointLine:
+    """A trajectory of the model for a record, ``contact`` in words; times are counted from the first contact."""
+
+    name: str
+    record: str
+    contact: str
+    path: Trajectory
+
+    @property
+    def conditions(self) -> Conditions:
+        """Those of the record."""
+        return self.path.conditions
+
+    @cached_property
+    def time_s(self) -> NDArray:
+        """The steps of the model, and times between where they are far apart."""
+        t = self.path.time_s
+        return np.sort(np.concatenate([t, np.arange(t[0], t[-1], _STEP_S)])) - self.path.impacts[0].time_s
+
+    @cached_property
+    def gap_m(self) -> NDArray:
+        """At ``time_s``."""
+        return self.path.gap(self.time_s + self.path.impacts[0].time_s)
+
+    @cached_property
+    def velocity_m_s(self) -> NDArray:
+        """At ``time_s``."""
+        return self.path.velocity(self.time_s + self.path.impacts[0].time_s)
+
+    @property
+    def contacts_s(self) -> NDArray:
+        """Times of all contacts."""
+        return np.array([i.time_s for i in self.path.impacts]) - self.path.impacts[0].time_s
+
+    @property
+    def far_speed(self) -> float:
+        """Speed of the first approach outside the film, carried to the wall, as the record's camera has it."""
+        track, t = datasets.load_track(self.record), self.time_s[[0, -1]]
+        frame = float(np.median(np.diff(track.time_s)))
+        time = frame * (np.arange(np.ceil(t[0] / frame), np.floor(t[1] / frame)) + 0.5)
+        filmed = Track(time, self.path.gap(time + self.path.impacts[0].time_s), "gap", track.sigma)
+        return float(find_impacts(filmed, self.conditions, Speed.FAR).rows[0]["impact_speed_m_s"])
+
+
+def closures() -> dict[str, tuple[str, Closures]]:
+    """What is shown: the contact in words, and the closures."""
+    return {
+        DRY: ("e_dry, cavitating film, no wake", Closures()),
+        DRY_WAKE: ("e_dry, cavitating film, wake of the approach", Closures(wake=OwnWake())),
+        RATIONAL: ("eq4_rational", Closures(rebound=laws.get("eq4_rational"))),
+    }
+
+
+def lines(record: str) -> list[PointLine]:
+    """The model's trajectories for a record."""
+    conditions, track = datasets.resource(record).conditions, datasets.load_track(record)
+    release = release_of(track, conditions)
+    end = float(np.ptp(track.time_s)) + _AFTER_S
+    return [
+        PointLine(name, record, contact, bounce(conditions, release, chosen, end))
+        for name, (contact, chosen) in closures().items()
+    ]
+
+
+def physics(record: str) -> pd.DataFrame:
+    """Each force of the model with film, cavitation and wake off in turn (:func:`forces_off`)."""
+    conditions, track = datasets.resource(record).conditions, datasets.load_track(record)
+    end = float(np.ptp(track.time_s)) + _AFTER_S
+    return forces_off(conditions, release_of(track, conditions), closures()[DRY_WAKE][1], end, track)
+
+
+def draw_physics(table: pd.DataFrame) -> Drawing:
+    """What each force does to the first apex, and to the distance from the frames."""
+    from matplotlib.figure import Figure
+
+    whole, rows = table.iloc[0], table.iloc[1:].sort_values("apex_1_change", key=abs)
+    with style():
+        figure = Figure(figsize=(9.0, 3.4), layout="constrained")
+        left, right = figure.subplots(1, 2, sharey=True)
+        y = np.arange(len(rows))
+        left.barh(y, 100 * rows.apex_1_change, color="#999999", edgecolor="black", lw=0.8)
+        left.axvline(0, color="black", lw=0.8)
+        left.set_yticks(y, rows.off)
+        left.set_ylabel("without")
+        left.set_xlabel("change of the first apex  [%]")
+        right.plot(rows.rms_d, y, "o", color="black", ms=5)
+        right.axvline(whole.rms_d, color="black", ls="--", lw=1.0, label="whole model")
+        right.set_xscale("log")
+        right.set_xlabel("rms distance from the frames  [$d$]")
+        right.grid(axis="y", color="#dddddd", lw=0.8)
+        right.legend(fontsize=8, loc="lower right")
+        return save(figure)
