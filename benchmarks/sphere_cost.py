@@ -32,7 +32,7 @@ def measure(diameter: int, shape: tuple[int, int, int], rounds: int) -> dict:
     """Seconds a step, and the shares of the sphere and of its kernels in the bare step."""
     rates = Rates.two_relaxation_times(0.02)
     bare = Simulation(shape, rates, faces={"z": "no-slip"}, dtype=np.float32)
-    bare.passes.append(lambda lattice, step, force: None)
+    bare.add(lambda lattice, step, force: None)
     full = Simulation(shape, rates, faces={"z": "no-slip"}, dtype=np.float32)
     full.lattice.populations = bare.lattice.populations  # the same memory for both
     centre = tuple(n / 2 + 0.17 for n in shape)
@@ -45,7 +45,7 @@ def measure(diameter: int, shape: tuple[int, int, int], rounds: int) -> dict:
         ball(lattice, step, force)
         spent[0] += alone() - start
 
-    full.passes.append(timed)
+    full.add(timed)
     bare.run(2)
     full.run(2)
     seconds = []

@@ -36,7 +36,7 @@ def array_drag(
     flow = Simulation((cells,) * 3, rates, force=(push, 0.0, 0.0))
     centre = cells // 2 + np.asarray(shift)
     ball = Spheres([Sphere(radius, 1.0, tuple(centre))], drive=lambda step, gap: STILL, interpolation=scheme)
-    flow.passes.append(ball)
+    flow.add(ball)
     fluid = ~inside(flow.shape, centre, radius)
     # Time in which the mean flow relaxes, by Hasimoto's series
     series = 1 - 1.7601 * fraction ** (1 / 3) + fraction - 1.5593 * fraction**2
@@ -97,7 +97,7 @@ def approach(
 
     centre = (shape[0] // 2 + 0.3, shape[1] // 2 + 0.17, radius * (1 + 2 * start))
     ball = Spheres([Sphere(radius, 8.0, centre)], drive=drive, interpolation=scheme)
-    flow.passes.append(ball)
+    flow.add(ball)
     flow.run(int((start * diameter - 0.05) / speed + 0.4 * ramp))
     track = ball.track()
     steady = (track["step"] > ramp) & (track["vz"] == -speed)
@@ -143,7 +143,7 @@ def translation(
         return tuple(speed * math.sin(math.pi / 2 * min(1.0, step / ramp)) ** 2 * direction)
 
     ball = Spheres([Sphere(diameter / 2, 2.0, (3.3, 4.17, 5.06))], drive=drive, interpolation=scheme)
-    flow.passes.append(ball)
+    flow.add(ball)
     flow.run(ramp + steps)
     force = np.stack([ball.track()[f] for f in ("fx", "fy", "fz")], axis=1)[ramp:]
     along = force @ direction
@@ -168,7 +168,7 @@ def drag_in_frame(diameter: float, sphere_velocity, fluid_velocity, *, viscosity
     velocity = tuple(float(v) for v in sphere_velocity)
     start = Sphere(diameter / 2, 2.0, (3.3, 4.17, 5.06), velocity=velocity)
     ball = Spheres([start], drive=lambda step, gap: velocity)
-    flow.passes.append(ball)
+    flow.add(ball)
     relative = np.subtract(sphere_velocity, fluid_velocity)
     flow.run(int(3 * diameter / np.linalg.norm(relative)))
     track = ball.track()
@@ -202,7 +202,7 @@ def shear(diameter: float, *, width=5.0, height=6.0, rate=2e-5, viscosity=1 / 6,
         ball = Spheres(
             [Sphere(diameter / 2, 1.0, centre, spin=spin)], drive=None if free else lambda step, gap: STILL
         )
-        flow.passes.append(ball)
+        flow.add(ball)
         flow.run(int(2 * diameter**2 / viscosity))
         found.append(ball.spins[0, 1] if free else ball.torques[0, 1])
     unit = 4 * math.pi * viscosity * (diameter / 2) ** 3 * rate
@@ -250,7 +250,7 @@ def settling(
         film=film(radius, viscosity),
         contact=DryRebound(0.5, 2 / 3 * math.pi * radius**3),
     )
-    flow.passes.append(ball)
+    flow.add(ball)
     flow.run(int(duration / dt))
     track = ball.track()
     # the nearest wall is the ceiling at first
@@ -292,7 +292,7 @@ def rebound(
         drive=drive,
         fraction=fraction,
     )
-    flow.passes.append(ball)
+    flow.add(ball)
     while not ball.impacts:
         flow.run(10)
     flow.run(int(1.5 * diameter / speed))

@@ -64,7 +64,7 @@ def test_peak_speed_of_a_measured_settling_sphere():
 def test_light_and_heavy_spheres_fall_without_oscillation(ratio):
     flow = Simulation((24, 24, 24), RATES)
     ball = Spheres([Sphere(3.0, ratio, (12.0, 12.3, 12.1))], gravity=(0.0, 0.0, -1e-4 / (ratio - 1)))
-    flow.passes.append(ball)
+    flow.add(ball)
     flow.run(400)
     v = ball.track()["vz"]
     assert (np.diff(v[:100]) < 0).all()
@@ -85,7 +85,7 @@ def test_sub_steps_and_place_of_contact_do_not_decide_the_rebound():
 def _falling(centre, shape=(20, 20, 20), **options):
     flow = Simulation(shape, RATES, threads=options.pop("threads", None))
     ball = Spheres([Sphere(3.31, 3.0, centre, **options)], gravity=(1e-5, 2e-5, -1e-4))
-    flow.passes.append(ball)
+    flow.add(ball)
     flow.run(200)
     return flow, ball
 
@@ -102,7 +102,7 @@ def test_two_spheres_an_image_apart_feel_the_same():
     alone = _falling((10.2, 10.1, 9.7))[1].track()
     flow = Simulation((40, 20, 20), RATES)
     pair = Spheres([Sphere(3.31, 3.0, (x, 10.1, 9.7)) for x in (10.2, 30.2)], gravity=(1e-5, 2e-5, -1e-4))
-    flow.passes.append(pair)
+    flow.add(pair)
     flow.run(200)
     for s in range(2):
         assert pair.track(s)["fz"] == pytest.approx(alone["fz"], abs=1e-12)
@@ -113,7 +113,7 @@ def test_what_a_sphere_at_rest_takes_the_fluid_loses():
     flow = Simulation((16, 16, 16), RATES)
     flow.set_flow(velocity=(0.02, -0.01, 0.005))
     ball = Spheres([Sphere(3.31, 3.0, (8.1, 8.3, 7.9))], drive=lambda step, gap: STILL)
-    flow.passes.append(ball)
+    flow.add(ball)
     fluid = ~flows.inside(flow.shape, (8.1, 8.3, 7.9), 3.31)
 
     def momentum():
@@ -147,7 +147,7 @@ def test_threads_do_not_change_a_bit():
 def test_a_sphere_at_rest_in_fluid_at_rest_feels_nothing():
     flow = Simulation((16, 16, 16), RATES, faces={"z": "no-slip"})
     ball = Spheres([Sphere(3.31, 3.0, (8.1, 8.3, 3.31))], drive=lambda step, gap: STILL)
-    flow.passes.append(ball)
+    flow.add(ball)
     flow.run(20)
     assert not ball.forces.any()
     assert not ball.torques.any()
