@@ -27,6 +27,11 @@ DEFINITIONS = tuple(str(s) for s in (Speed.FAR, Speed.CONTACT, Speed.WINDOW))
 SENSITIVITY = (
     ("cells per diameter, contact (b)", ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20")),
     (
+        "cells per diameter, contact (b), in a smaller box",
+        ("gondret_st152_10_small", "gondret_st152_16_small", "gondret_st152_20_small"),
+    ),
+    ("a box 6 d wide and 12 d high, a way of 9 d", ("gondret_st152_10", "gondret_st152_10_small")),
+    (
         "cells per diameter, contact (a)",
         ("gondret_st152_10_measured", "gondret_st152_16_measured", "gondret_st152_20_measured"),
     ),
@@ -37,7 +42,14 @@ SENSITIVITY = (
         "film: what the grid lacks, or Eq. (3) from 1 or 2 cells on",
         ("gondret_st152_10", "gondret_st152_10_cutoff1", "gondret_st152_10_cutoff2"),
     ),
-    ("cavitation of the film", ("gondret_st152_10", "gondret_st152_10_suction")),
+    (
+        "tension the film bears: 1 atm, calibrated at St 27, any",
+        ("gondret_st152_10", "gondret_st152_10_calibrated", "gondret_st152_10_suction"),
+    ),
+    (
+        "added mass that the wall pays for: the lattice's, potential flow's",
+        ("gondret_st152_10", "gondret_st152_10_potential"),
+    ),
 )
 """What is varied, and the cases; changes are from the first."""
 
