@@ -185,6 +185,7 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
         "closures": path.closures.describe(),
         "contacts": prediction.contacts,
         "notes": _not_used(case) + notes,
+        "case_as_run": case.model_dump(mode="json", exclude_none=True),
     }
     contents = (csv(trajectory), csv(velocity), csv(impacts), json.dumps(about, indent=1) + "\n")
     write_folder(folder, dict(zip(FILES, contents, strict=True)))
