@@ -28,34 +28,42 @@ TARGETS = {10: 0.15, 20: 0.10}
 _STEPS = 10
 
 
+class _Timed:
+    """A body whose calls are timed."""
+
+    def __init__(self, body):
+        self.body, self.seconds = body, 0.0
+
+    def __call__(self, lattice, step, force):
+        start = time.perf_counter()
+        self.body(lattice, step, force)
+        self.seconds += time.perf_counter() - start
+
+    def describe(self) -> dict:
+        return {}
+
+
 def measure(diameter: int, shape: tuple[int, int, int], rounds: int) -> dict:
     """Seconds a step, and the shares of the sphere and of its kernels in the bare step."""
     rates = Rates.two_relaxation_times(0.02)
     bare = Simulation(shape, rates, faces={"z": "no-slip"}, dtype=np.float32)
-    bare.add(lambda lattice, step, force: None)
+    bare.add(_Timed(lambda lattice, step, force: None))  # a body, so that both make one step a sweep
     full = Simulation(shape, rates, faces={"z": "no-slip"}, dtype=np.float32)
     full.lattice.populations = bare.lattice.populations  # the same memory for both
     centre = tuple(n / 2 + 0.17 for n in shape)
     ball = Spheres([Sphere(diameter / 2, 8.0, centre, velocity=(0.0, 0.0, -0.05))], gravity=(0.0, 0.0, -1e-5))
-    alone = time.perf_counter
-    spent = [0.0]
-
-    def timed(lattice, step, force):
-        start = alone()
-        ball(lattice, step, force)
-        spent[0] += alone() - start
-
+    timed = _Timed(ball)
     full.add(timed)
     bare.run(2)
     full.run(2)
     seconds = []
     for _ in range(rounds):
-        start = alone()
+        start = time.perf_counter()
         bare._advance(bare.steps + _STEPS)
-        middle = alone()
-        spent[0] = 0.0
+        middle = time.perf_counter()
+        timed.seconds = 0.0
         full._advance(full.steps + _STEPS)
-        seconds.append((middle - start, alone() - middle, spent[0]))
+        seconds.append((middle - start, time.perf_counter() - middle, timed.seconds))
     plain, whole, own = np.array(seconds).T / _STEPS
     return {
         "diameter": diameter,
