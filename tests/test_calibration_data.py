@@ -150,3 +150,12 @@ def test_report_is_whole_and_loads_nothing(tmp_path):
     again = report.write(tmp_path / "again", read_fit(tmp_path / "out" / "fit.json"))
     for name in again:
         assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "out" / name).read_bytes(), name
+
+
+def test_a_missing_limit_is_said_to_count_as_zero(tmp_path, capsys):
+    rows = [f"{s},st,far,0.97,{0.97 * np.exp(-15 / s):.3f},0.02,rebound" for s in (20, 40, 80, 160, 320)]
+    rows.append("12,st,far,0.97,,,no_rebound")
+    header = "stokes,stokes_convention,speed_definition,e_dry,e_eff,e_eff_sigma,outcome"
+    (tmp_path / "some.csv").write_text("\n".join([header, *rows]) + "\n")
+    main(["fit", str(tmp_path / "some.csv"), "--law", "eq4_exponential"])
+    assert "e_eff_upper" in capsys.readouterr().out

@@ -163,7 +163,7 @@ def from_table(table: pd.DataFrame, how: Reading, file: str, digest: str) -> Obs
     upper = np.where(none, table["e_eff_upper"].fillna(0.0).to_numpy(float), np.nan)
     e = np.where(none, np.nan, e)
     _check_restitution(e, none, how.unphysical, file, rows)
-    notes = _missing_sigmas(e_sigma, none, file)
+    notes = _missing_sigmas(e_sigma, none, file) + _limits_of_zero(none & table["e_eff_upper"].isna(), file)
     known = e_sigma[~none & np.isfinite(e_sigma)]
     # A limit has no error of its own; that of a typical measured impact blurs it.
     e_sigma = np.where(np.isfinite(e_sigma), e_sigma, np.median(known) if len(known) else 0.0)
@@ -306,6 +306,16 @@ def _check_restitution(e: np.ndarray, none: np.ndarray, unphysical: bool, file: 
             "explain it, --allow-unphysical fits it as it is (dropping it would bias the fit)"
         )
         raise InputError(*(Defect(rule, file, int(rows[i]), "e_eff", f"{e[i]:g}") for i in wrong))
+
+
+def _limits_of_zero(without: pd.Series, file: str) -> tuple[str, ...]:
+    n = int(without.sum())
+    if not n:
+        return ()
+    return (
+        f"{file}: {n} impacts without a rebound state no e_eff_upper and count as e_eff <= 0; give the least "
+        "e_eff that would have been seen",
+    )
 
 
 def _missing_sigmas(e_sigma: np.ndarray, none: np.ndarray, file: str) -> tuple[str, ...]:
