@@ -100,14 +100,14 @@ def _everything() -> tuple:
 
 
 def predicted(folder: Path) -> dict[str, KeptRun]:
-    """Kept runs at ten cells in which the rebound is no input: dry restitution with the film resolved."""
+    """Kept runs at ten cells in which no rebound is an input: dry restitution, nothing tuned."""
     from restitution import case_files
     from restitution.kept_runs import read_run
 
     found = {}
     for name in case_files.names():
         case = case_files.read_case(name)
-        varied = name.startswith("gondret_st152") and name != "gondret_st152_10"
+        varied = name.endswith("_calibrated") or (name.startswith("gondret_st152") and name != "gondret_st152_10")
         if case.contact is not None and case.contact.mode == "dry" and not varied:
             run = read_run(case, folder)
             if run is not None and len(run.impacts):
