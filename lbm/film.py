@@ -3,8 +3,8 @@
 Closures are plain callables in lattice units. ``normal(gap, velocity, onset)`` returns the force along the
 wall's normal; ``velocity`` is positive away from the wall and ``onset`` the velocity with which the sphere came
 through the cut-off, NaN while it leaves. It must be of first degree in ``velocity``, as lubrication is.
-``tangential(gap, slip, spin)`` returns force and torque, 3 components each, of a sphere that moves with
-``slip`` along the wall and turns with ``spin``.
+``tangential(gap, slip, spin, normal)`` returns force and torque, 3 components each, of a sphere that moves with
+``slip`` along the wall and turns with ``spin``, about an axis along the wall; ``normal`` points away from it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ RESOLVED = 0.5
 """Gap in cells from which on there is a cell of fluid between sphere and wall: its centre is half a cell away."""
 
 Normal = Callable[[float, float, float], float]
-Tangential = Callable[[float, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+Tangential = Callable[[float, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -52,11 +52,14 @@ class Film:
             return 0.0, 0.0
         return still, (force - still) / velocity
 
-    def along(self, gap: float, slip: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def along(
+        self, gap: float, velocity: np.ndarray, spin: np.ndarray, normal: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Force and torque of the motion along the wall."""
         if self.tangential is None or gap >= self.cut_off:
             return np.zeros(3), np.zeros(3)
-        return self.tangential(max(gap, self.floor), slip, spin)
+        slip, turning = velocity - (velocity @ normal) * normal, spin - (spin @ normal) * normal
+        return self.tangential(max(gap, self.floor), slip, turning, normal)
 
 
 def lost_to_grid(gap: float) -> float:

@@ -161,9 +161,7 @@ class Spheres:
         near = {f: gap for f, gap in gaps.items() if self.wall_motion.matters(gap, _away(f) * v[f // 2])}
         for f, gap in near.items():
             if self.film is not None:
-                slip = v.copy()
-                slip[f // 2] = 0.0
-                push, turn = self.film.along(gap, slip, self.spins[s])
+                push, turn = self.film.along(gap, v, self.spins[s], _away(f) * np.eye(3)[f // 2])
                 force, torque = force + push, torque + turn
         new = v + (force + weight) / mass
         centre = self.centres[s] + 0.5 * (v + new)

@@ -22,13 +22,15 @@ class Release(Record):
     """How the sphere starts, at the gap ``gap_d``.
 
     ``rest``: set free at rest. ``drive``: moved at u(t) = ``speed`` (1 - exp(-t/``ramp``)) towards the wall, speed
-    in m/s and ramp in s, until the gap is ``free_below_d``; free from there on.
+    in m/s and ramp in s, until the gap is ``free_below_d``; free from there on. ``along`` is the speed along the
+    wall, in m/s, gained likewise: an oblique impact.
     """
 
     kind: Literal["rest", "drive"]
     gap_d: Positive
     speed: Positive | None = None
     ramp: Positive | None = None
+    along: NonNegative = 0.0
     free_below_d: Positive = 0.5
 
 
@@ -60,6 +62,7 @@ class FilmModel(Record):
     ``lost_to_grid`` is what the grid lacks of the film, which fixes its cut-off (:func:`lbm.film.lost_to_grid`);
     the other forms have one to choose, ``cut_off_cells``, by default 1.
     At the floor sphere and wall touch; by default it is the larger of the stated roughnesses.
+    With ``tangential`` the film also resists sliding and turning at the wall, below the same cut-off.
     """
 
     form: FilmForm = "none"
@@ -67,6 +70,7 @@ class FilmModel(Record):
     floor: Positive | None = None
     tension: Positive | None = None
     """Tension in Pa at which the film cavitates as the sphere leaves (``cavitating_film``); else it holds."""
+    tangential: bool = False
 
     @property
     def cut_off(self) -> float:
@@ -84,7 +88,8 @@ class ContactModel(Record):
 
     ``effective``: e_eff of the motion outside the film, by a rebound ``law`` with ``parameters`` or as
     ``measured``, one value a bounce, "record" taking those of the record. ``dry``: e_dry at the film's floor.
-    ``soft_linear``, ``soft_hertz``: a contact of e_dry stretched over ``duration_steps``.
+    ``soft_linear``, ``soft_hertz``: a contact of e_dry stretched over ``duration_steps``. None has friction: along
+    the wall the sphere feels the fluid alone.
 
     ``added_mass`` is the fluid that is reversed with the sphere, over the fluid it displaces: 0.803 in potential
     flow about a sphere that touches a wall. By default it is what the lattice makes of that at its resolution.

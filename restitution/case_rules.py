@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from restitution import laws
 from restitution.case import Case
 from restitution.errors import Defect, InputError
+from restitution.lattice_closures import LARGEST_EPS
 
 FEWEST_CELLS = 6.0
 """Cells a diameter below which the surface of a sphere is no sphere any more."""
@@ -16,7 +17,7 @@ HEADROOM_D = 1.0
 
 def defects(case: Case, file: str) -> list[Defect]:
     """Everything wrong with a case whose single fields are valid."""
-    rules = (_fall, _release, _span, _film, _contact, *((_resolution, _box) if case.numerics else ()))
+    rules = (_fall, _release, _span, _film, _along, _contact, *((_resolution, _box) if case.numerics else ()))
     return [
         Defect(rule, file, None, field, None if value is None else f"{value}")
         for check in rules
@@ -44,6 +45,8 @@ def _release(case: Case) -> Iterator[Finding]:
             yield f"release.{name}", None, "is missing: the drive needs it"
         if r.kind == "rest" and given is not None:
             yield f"release.{name}", f"{given:g}", "is not used by a release from rest: leave it out"
+    if r.kind == "rest" and r.along:
+        yield "release.along", f"{r.along:g}", "needs the drive: a release from rest has no speed"
     if r.kind == "drive" and r.gap_d <= r.free_below_d:
         yield (
             "release.gap_d",
@@ -69,7 +72,7 @@ def _film(case: Case) -> Iterator[Finding]:
     if case.film.tension is not None and case.film.form == "none":
         yield "film.tension", f"{case.film.tension:g}", "needs a film that it can tear: film.form is 'none'"
     touches = case.contact is not None and case.contact.mode != "effective"
-    if case.floor is None and (case.film.form != "none" or touches):
+    if case.floor is None and (case.film.form != "none" or case.film.tangential or touches):
         yield "film.floor", None, "is missing, and no roughness is stated: give the gap in m at which they touch"
     elif case.floor is not None and case.numerics is not None:
         cell = case.sphere.diameter / case.numerics.cells_per_diameter
@@ -77,6 +80,17 @@ def _film(case: Case) -> Iterator[Finding]:
             cut_off = case.film.cut_off
             rule = f"must lie below the cut-off of {cut_off:g} cells = {cut_off * cell:.3g} m"
             yield "film.floor", f"{case.floor:g}", rule
+
+
+def _along(case: Case) -> Iterator[Finding]:
+    if not case.film.tangential or case.numerics is None:
+        return
+    eps = 2 * case.film.cut_off / case.numerics.cells_per_diameter
+    if eps > LARGEST_EPS:
+        rule = (
+            f"resistances along the wall hold to gap/r = {LARGEST_EPS:g}, the cut-off is at {eps:.3g}: more cells"
+        )
+        yield "film.tangential", "true", rule
 
 
 def _contact(case: Case) -> Iterator[Finding]:

@@ -47,3 +47,7 @@ class OutOfRangeError(InputError):
 
 class OutOfRangeWarning(UserWarning):
     """A law was evaluated outside its validity range."""
+
+
+class StoppedError(RuntimeError):
+    """A run could not go on; what it has is written. The message says why, in one line."""

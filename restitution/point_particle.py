@@ -17,7 +17,7 @@ contact ``effective``        e_eff by law or as measured; the film within 0.1 d 
 contact ``dry``              e_dry at the floor
 contact ``soft_*``           refused: a contact here takes no time
 ``[run]``                    as it is
-not used                     ``[numerics]``, ``contact.added_mass`` (potential flow's), ``snapshot_interval``
+not used                     ``[numerics]``, ``film.tangential``, ``contact.added_mass``, ``snapshot_interval``
 ===========================  ==========================================================================
 
 Drag is Schiller & Naumann's and history Dorgan & Loth's, the defaults of :class:`restitution.bounce.Closures`.
@@ -126,6 +126,9 @@ def closures_of(case: Case, file: str = "") -> Closures:
 def release_of_case(case: Case) -> Release:
     """The moment at which the sphere is free."""
     r, d = case.release, case.sphere.diameter
+    if r.along:
+        rule = "is not in this model, which moves up and down only: use the resolved solver"
+        raise InputError(Defect(rule, field="release.along", value=f"{r.along:g}"))
     if r.kind == "rest":
         return Release(r.gap_d * d)
     return Release(r.free_below_d * d, drive=Drive(r.speed, r.ramp, (r.gap_d - r.free_below_d) * d))

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,14 +23,10 @@ from lbm.observers import DivergenceGuard, FieldOutput
 from lbm.rates import PRESETS
 from lbm.scales import FlowScales
 from lbm.spheres import Sphere, Spheres
-from restitution import laws
 from restitution.case import Case
-from restitution.errors import Defect, InputError
+from restitution.errors import Defect, InputError, StoppedError
 from restitution.impact_speed import H_FILM
-from restitution.laws.cavitation import CavitatingFilm, film_edge
-from restitution.laws.source_abstract_eq3 import lubrication_force
-from restitution.measured_bounces import measured_restitution
-from restitution.stokes import Speed, StokesNumber
+from restitution.lattice_closures import Normal, Tangential, normal_force, rebound, tangential_force
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -130,19 +127,38 @@ class ResolvedRun:
         return _LONGEST * _fall_time(self.case)
 
     def advance(self, observers: tuple = ()) -> None:
-        """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed."""
+        """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed.
+
+        Raises :class:`StoppedError` for a run that diverges or cannot write.
+        """
         steps = _LONGEST_RUN
         if not math.isfinite(self.gap_d):
-            self.guard(self.simulation)  # names the cell, if the flow is to blame
-            raise lbm.DivergenceError(self.simulation.steps, (0, 0, 0), "position of the sphere", self.gap_d)
+            self.check()  # names the cell, if the flow is to blame
+            raise StoppedError(f"diverged by step {self.simulation.steps}: the sphere is nowhere")
         if not self.spheres.impacts:
             least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
             speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
             steps = int(min(max(0.5 * self.gap_d * self.flow.length / speed, 1), steps))
         self._unguarded += steps
         due = self._unguarded >= _LONGEST_RUN
-        self.simulation.run(steps, observers, guard=self.guard if due else None)
+        with _in_our_words():
+            self.simulation.run(steps, observers, guard=self.guard if due else None)
         self._unguarded = 0 if due else self._unguarded
+
+    def check(self) -> None:
+        """Raise :class:`StoppedError` if the flow has diverged."""
+        with _in_our_words():
+            self.guard(self.simulation)
+
+    def save(self, path: Path) -> None:
+        """Write a checkpoint; raises :class:`StoppedError` where that cannot be."""
+        with _in_our_words():
+            self.simulation.save(path)
+
+    def restore(self, path: Path) -> None:
+        """Continue from a checkpoint; raises :class:`InputError` for one that does not fit."""
+        with _in_our_words():
+            self.simulation.restore(path)
 
     def snapshots(self, folder: Path) -> FieldOutput:
         """An observer that writes the flow for ParaView."""
@@ -192,6 +208,17 @@ class ResolvedRun:
         return self.flow.scales.si(curl, "frequency")
 
 
+@contextmanager
+def _in_our_words() -> Iterator[None]:
+    """The solver's errors as this package's."""
+    try:
+        yield
+    except lbm.InputError as error:
+        raise InputError(str(error)) from None
+    except (lbm.DivergenceError, lbm.OutputError) as error:
+        raise StoppedError(str(error)) from None
+
+
 def _scales(case: Case) -> FlowScales:
     n = case.numerics
     return FlowScales.from_conditions(
@@ -232,59 +259,30 @@ def _drive(case: Case, flow: FlowScales) -> Callable | None:
     r = case.release
     if r.kind == "rest":
         return None
-    speed, ramp = flow.scales.lattice(r.speed, "velocity"), r.ramp / flow.scales.step_s
-    free_below = r.free_below_d * flow.length
+    down, along = (flow.scales.lattice(v, "velocity") for v in (r.speed, r.along))
+    ramp, free_below = r.ramp / flow.scales.step_s, r.free_below_d * flow.length
 
     def drive(step: float, gap: float) -> tuple[float, float, float] | None:
-        return None if gap < free_below else (0.0, 0.0, speed * math.expm1(-step / ramp))
+        share = math.expm1(-step / ramp)
+        return None if gap < free_below else (-along * share, 0.0, down * share)
 
     return drive
 
 
 def _film(case: Case, flow: FlowScales) -> Film | None:
-    if case.floor is None or (case.contact is not None and case.contact.mode == "effective"):
+    black_box = case.contact is not None and case.contact.mode == "effective"
+    if case.floor is None or (black_box and not case.film.tangential):
         return None
+    return Film(case.film.cut_off, flow.scales.lattice(case.floor, "length"), *film_forces(case, flow))
+
+
+def film_forces(case: Case, flow: FlowScales) -> tuple[Normal | None, Tangential | None]:
+    """What the film does across and along the wall, in lattice units."""
+    r, mu, tension = flow.length / 2, flow.viscosity, case.film.tension
     floor = flow.scales.lattice(case.floor, "length")
-    return Film(case.film.cut_off, floor, normal_force(case, flow))
-
-
-def normal_force(case: Case, flow: FlowScales) -> Callable[[float, float, float], float] | None:
-    """The film's normal force in lattice units, of gap, velocity away from the wall, and that at the cut-off."""
-    form, r, mu = case.film.form, flow.length / 2, flow.viscosity
-    cut_off, floor = case.film.cut_off, flow.scales.lattice(case.floor, "length")
-    if form == "none":
-        return None
-    if form == "source_abstract_eq3":
-
-        def holding(gap: float, velocity: float, onset: float) -> float:
-            return -float(lubrication_force(gap, -velocity, -onset, r=r, mu=mu, D0=cut_off, h_min=floor))
-
-    elif form == "lost_to_grid":
-
-        def holding(gap: float, velocity: float, onset: float) -> float:
-            return -6 * math.pi * mu * r * r * velocity * lost_to_grid(gap)
-
-    else:
-        law = laws.get(form, eps_c=cut_off / r, eps_min=floor / r)
-
-        def holding(gap: float, velocity: float, onset: float) -> float:
-            return float(-6 * math.pi * mu * r * velocity * law(gap / r, out_of_range="ignore"))
-
-    if case.film.tension is None:
-        return holding
-    torn, tension = CavitatingFilm(), flow.scales.lattice(case.film.tension, "pressure")
-
-    def tearing(gap: float, velocity: float, onset: float) -> float:
-        """The torn film's force less what the grid has of the film: the holding one's less what is added to it."""
-        force = holding(gap, velocity, onset)
-        if velocity <= 0:
-            return force
-        h = max(gap, floor)
-        whole = float(torn(h / r, film_edge(mu, velocity, r, tension), out_of_range="ignore"))
-        in_grid = r / h + force / (6 * math.pi * mu * r * velocity)
-        return min(0.0, -6 * math.pi * mu * r * velocity * (whole - in_grid))
-
-    return tearing
+    tension = None if tension is None else flow.scales.lattice(tension, "pressure")
+    across = normal_force(case.film, r=r, mu=mu, floor=floor, tension=tension, lost=lost_to_grid)
+    return across, tangential_force(case.film, r=r, mu=mu)
 
 
 def _contact(case: Case, flow: FlowScales, density: float) -> Contact | None:
@@ -300,26 +298,6 @@ def _contact(case: Case, flow: FlowScales, density: float) -> Contact | None:
         return make(e, density * displaced + carried, c.duration_steps)
     free_fall = flow.scales.lattice(case.conditions.free_fall, "acceleration")
     return FilmRebound(rebound(case, flow.scales.unit("velocity")), H_FILM * flow.length, free_fall)
-
-
-def rebound(case: Case, unit: float) -> Callable[[float, int], float]:
-    """Rebound speed of an approach speed outside the film, both in units of ``unit`` m/s, and bounce number.
-
-    With measured values the sphere stays at the wall after the last of them.
-    """
-    c, conditions = case.contact, case.conditions
-    if c.law is None:
-        measured = measured_restitution(case.record) if c.measured == "record" else c.measured
-        return lambda v, count: v * (measured[count] if count < len(measured) else 0.0)
-    law = laws.get(c.law, **c.parameters)
-
-    def by_law(v: float, count: int) -> float:
-        if v <= 0:
-            return 0.0
-        St = StokesNumber.from_speed(v * unit, conditions, "st", Speed.FAR).read_as(law.speed)
-        return float(v * law(St, case.sphere.e_dry, conditions, out_of_range="ignore"))
-
-    return by_law
 
 
 def _fall_time(case: Case) -> float:

@@ -7,6 +7,7 @@ not when a sentence about it has. The hash is the same under all versions of Pyt
 from __future__ import annotations
 
 import hashlib
+import importlib.util
 import inspect
 import io
 import json
@@ -21,10 +22,10 @@ from restitution.case import Case
 
 _HERE = Path(__file__).parent
 _MODULES = (
-    "branch.py", "conditions.py", "impact_speed.py", "impacts.py", "measured_bounces.py", "resolved.py",
-    "simulate.py", "stokes.py", "tracks.py", "laws/base.py", "laws/brenner_1961.py", "laws/cavitation.py",
-    "laws/cut_off.py", "laws/rebound.py", "laws/resistance.py", "laws/source_abstract_eq3.py",
-    "laws/wall_normal.py",
+    "branch.py", "conditions.py", "impact_speed.py", "impacts.py", "lattice_closures.py", "measured_bounces.py",
+    "resolved.py", "simulate.py", "stokes.py", "tracks.py", "laws/base.py", "laws/brenner_1961.py",
+    "laws/cavitation.py", "laws/cut_off.py", "laws/rebound.py", "laws/resistance.py",
+    "laws/source_abstract_eq3.py", "laws/wall_normal.py", "laws/wall_tangential.py",
 )  # fmt: skip
 _WITHOUT_EFFECT = {"problems.py", "progress.py", "vtkhdf.py"}
 """Modules of the solver that no result depends on."""
@@ -65,9 +66,8 @@ def run_key(case: Case) -> RunKey:
 @cache
 def code_hash() -> str:
     """Hash of the solver and of what lies between it and a result."""
-    import lbm
-
-    solver = [path for path in Path(lbm.__file__).parent.glob("*.py") if path.name not in _WITHOUT_EFFECT]
+    package = Path(importlib.util.find_spec("lbm").origin).parent  # found, not imported: its text is what counts
+    solver = [path for path in package.glob("*.py") if path.name not in _WITHOUT_EFFECT]
     files = {f"lbm/{path.name}": path for path in solver} | {name: _HERE / name for name in _MODULES}
     return _hash(f"{name}\n{program(files[name].read_text('utf-8'))}" for name in sorted(files))
 

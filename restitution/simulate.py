@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution.case import Case
-from restitution.errors import Defect, InputError
+from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder, write_whole
 from restitution.flow_pictures import FlowFrames
 from restitution.impacts import find_impacts
@@ -46,10 +46,6 @@ CHECKPOINT, IDENTITY, SO_FAR = "checkpoint.h5", "checkpoint.json", "trajectory_s
 KEPT = ("trajectory.csv", "velocity.csv", "impacts.csv", "run.json", "flow.npz")
 
 
-class StoppedError(RuntimeError):
-    """The run could not go on; what it has is written. The message says why, in one line."""
-
-
 def simulate(
     case: Case,
     folder: str | Path,
@@ -66,7 +62,6 @@ def simulate(
     :class:`InputError` for a case that cannot be run and :class:`StoppedError` for a run that diverges or
     cannot write; Ctrl-C is raised again once the checkpoint has been written.
     """
-    import lbm
     from restitution.resolved import ResolvedRun
 
     folder = Path(folder)
@@ -93,10 +88,8 @@ def simulate(
                 if time.perf_counter() - saved > SECONDS_PER_CHECKPOINT:
                     saved = time.perf_counter()
                     _checkpoint(run, key, frames, folder, spent + saved - start)
-    except BaseException as error:
-        _leave(run, case, key, frames, folder, spent + time.perf_counter() - start)
-        if isinstance(error, lbm.DivergenceError | lbm.OutputError):
-            raise StoppedError(str(error)) from None
+    except BaseException:
+        _leave(run, key, frames, folder, spent + time.perf_counter() - start)
         raise
     seconds = spent + time.perf_counter() - start
     contents = results(run, case, key, frames, seconds)
@@ -198,7 +191,7 @@ def _g(value: float) -> float:
 
 
 def _checkpoint(run: ResolvedRun, key: RunKey, frames: FlowFrames, folder: Path, seconds: float) -> None:
-    run.simulation.save(folder / CHECKPOINT)
+    run.save(folder / CHECKPOINT)
     state = {"key": key.key, "steps": run.simulation.steps, "seconds": round(seconds, 1)}
     write_folder(folder, {IDENTITY: json.dumps(state), "flow.npz": frames.as_bytes()})
 
@@ -217,28 +210,21 @@ def _identity(folder: Path) -> dict:
 
 def _resume(run: ResolvedRun, key: RunKey, frames: FlowFrames, folder: Path) -> float:
     """Take up the checkpoint of the same run; returns the seconds it had taken."""
-    import lbm
-
     state = _identity(folder)
     if state.get("key") != key.key:
         rule = "is of another case or of another version of the code: leave --resume out to start anew"
         raise InputError(Defect(rule, str(folder / CHECKPOINT)))
-    try:
-        run.simulation.restore(folder / CHECKPOINT)
-    except lbm.InputError as error:
-        raise InputError(str(error)) from None
+    run.restore(folder / CHECKPOINT)
     frames.read(folder / "flow.npz")
     return float(state.get("seconds", 0.0))
 
 
-def _leave(run: ResolvedRun, case: Case, key: RunKey, frames: FlowFrames, folder: Path, seconds: float) -> None:
+def _leave(run: ResolvedRun, key: RunKey, frames: FlowFrames, folder: Path, seconds: float) -> None:
     """What a stopped run leaves: trajectory so far and, where its state is sound, a checkpoint."""
-    import lbm
-
     if run.simulation.steps == 0:
         return
-    with suppress(lbm.DivergenceError, lbm.InputError, lbm.OutputError, InputError):  # the last sound one stays
-        run.guard(run.simulation)
+    with suppress(StoppedError, InputError):  # the last sound one stays
+        run.check()
         _checkpoint(run, key, frames, folder, seconds)
     table = run.motion().iloc[:: run.rows_apart()][["time_s", "gap_m"]]
     with suppress(InputError):  # a full disk: the error that stopped the run is the one to show

@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int | None:
     import sys
 
     from restitution.case_files import read_case
-    from restitution.errors import Defect, InputError
+    from restitution.errors import Defect, InputError, StoppedError
 
     if args.list:
         _list()
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int | None:
         return None
     if args.out == "":
         raise InputError(Defect("names no folder", field="--out"))
-    from restitution.simulate import StoppedError, simulate
+    from restitution.simulate import simulate
 
     folder = Path(args.out or case.name)
 

@@ -17,12 +17,12 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from restitution import case_files, datasets
 from restitution.bounces import Bounces, filmed
-from restitution.errors import Defect, InputError
+from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder
 from restitution.kept_runs import FOLDER, KeptRun, ensure, read_run
 from restitution.report.fig2_scores import scores
 from restitution.report.point_particle import PointLine, draw_physics, lines, physics
-from restitution.simulate import StoppedError, csv
+from restitution.simulate import csv
 
 if TYPE_CHECKING:
     import pandas as pd
