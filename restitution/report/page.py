@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 from importlib import metadata
 from typing import Any
 
@@ -36,3 +37,13 @@ def png_image(png: bytes) -> str:
 def _svg_image(svg: str) -> str:
     """The address of an image that is in the page itself; as an image its ids cannot clash with another's."""
     return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
+
+
+def number(value: float, digits: int) -> str:
+    """A number with so many decimals; nothing for NaN."""
+    return "" if math.isnan(value) else f"{value:.{digits}f}"
+
+
+def percent(value: float, digits: str = ".1f") -> str:
+    """A relative error in per cent, with its sign; nothing for NaN."""
+    return "" if math.isnan(value) else f"{value * 100:+{digits}} %"

@@ -1,0 +1,62 @@
+"""What Figure 2's page says of the solver: settling spheres, numerics of the runs, verification."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from restitution.report.page import percent
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from restitution.kept_runs import KeptRun
+    from restitution.report.fig2 import Check, Fig2
+
+
+def settling(fig2: Fig2, table: pd.DataFrame) -> list[dict]:
+    rows = []
+    for name, run in fig2.runs.items():
+        row = table.loc[name]
+        if run.case.contact is not None or math.isnan(row["peak_over_terminal"]):
+            continue
+        rows.append(
+            {
+                "name": name,
+                "peak": f"{row['peak_over_terminal']:.4f}",
+                "error": percent(row["peak_over_terminal_error"], ".2f"),
+                "rms": "" if math.isnan(row["rms_over_drop"]) else f"{row['rms_over_drop'] * 100:.2f} %",
+                "made": run.made_with,
+                "stale": run.stale,
+            }
+        )
+    return rows
+
+
+def numerics(run: KeptRun) -> dict:
+    n, film, about = run.case.numerics, run.case.film, run.about
+    return {
+        "name": run.case.name,
+        "cells": f"{n.cells_per_diameter:g}",
+        "shape": " × ".join(str(s) for s in about.shape),
+        "steps": about.steps,
+        "step_us": f"{about.step_s * 1e6:.3g}",
+        "numbers": {k: f"{about.numbers[k]:.4g}" for k in ("Re", "Ma", "relaxation time", "grid Re")},
+        "method": f"{n.rates}, {n.interpolation}, {n.precision}; sides {n.sides}, top {n.top}",
+        "film": film.form if film.form == "none" else f"{film.form}, {film.cut_off:g} cells",
+        "seconds": f"{about.seconds:.0f} ({about.threads})",
+    }  # fmt: skip
+
+
+def check(c: Check) -> dict:
+    # Against 0 the error is the figure itself, which stands there already.
+    return {
+        "name": c.name,
+        "case": c.case,
+        "measured": f"{c.measured:.4g}",
+        "reference": f"{c.reference:.4g}" if c.reference else "",
+        "error": percent(c.error, ".2f"),
+        "target": "" if c.target is None else f"{c.target * 100:g} %",
+        "missed": c.target is not None and abs(c.error) > c.target,
+        "source": c.source,
+    }
