@@ -50,8 +50,8 @@ def _restitution(run: KeptRun, record: str) -> str:
     """e_eff far, bounce by bounce, beside the measured one and its error."""
     rows = find_impacts(datasets.load_track(record), datasets.resource(record).conditions, Speed.FAR).rows
     own = run.impacts[run.impacts.speed_definition == str(Speed.FAR)].set_index("impact").e_eff
-    pairs = [(own[r["impact"]], r["e_eff"], r["e_eff_sigma"]) for r in rows if own.get(r["impact"]) is not None]
-    pairs = [(a, b, s) for a, b, s in pairs if not (math.isnan(a) or b is None or math.isnan(b))]
+    measured = {r["impact"]: (r["e_eff"], r["e_eff_sigma"]) for r in rows if "e_eff" in r}
+    pairs = [(own[k], *found) for k, found in measured.items() if math.isfinite(own.get(k, math.nan))]
     within = sum(abs(a - b) <= 2 * s for a, b, s in pairs)
     each = "; ".join(f"{a:.3f} against {b:.3f} ± {s:.3f}" for a, b, s in pairs)
     return (
