@@ -46,6 +46,10 @@ def checked(observers: Iterable[Observer]) -> list[Observer]:
     return found
 
 
+_STABLE = 0.51
+"""Relaxation time below which it, not the lattice speed, is what makes a flow diverge."""
+
+
 @dataclass(frozen=True)
 class DivergenceGuard:
     """Stops a run whose density or speed leaves ``density`` or ``top_speed`` (lattice units), or is NaN."""
@@ -79,9 +83,12 @@ class DivergenceGuard:
             cell,
             quantity,
             float(value),
-            f" (allowed: density {low:g} to {high:g}, speed up to {self.top_speed:g}); "
-            "lower the lattice speed, "
-            f"or raise the viscosity (now {simulation.rates.viscosity:.3g}) by more cells",
+            f" (allowed: density {low:g} to {high:g}, speed up to {self.top_speed:g}); take more cells"
+            + (
+                f": the relaxation time, {tau:.4f}, is close to 1/2"
+                if (tau := 0.5 + 3 * simulation.rates.viscosity) < _STABLE
+                else ", or a lower lattice speed"
+            ),
         )
 
 

@@ -3,9 +3,11 @@
 1. The fluid's populations are reflected at the surfaces, which gives force and torque (:mod:`lbm.exchange`).
 2. Each sphere moves (Crank-Nicolson), near a wall in sub-steps (:mod:`lbm.wall_motion`)::
 
-       v' = v + F/m,  x' = x + (v + v')/2,  omega' = omega + T/I
+       v' = v + F/m,  x' = x + (v + v')/2,  (I + I_f) (omega' - omega) = T + I_f (omega - omega_before)
 
-   F with gravity and buoyancy; the fluid's force is its momentum exchange over the very step.
+   F with gravity and buoyancy; the fluid's force is its momentum exchange over the very step. I_f is the moment
+   of inertia of the displaced fluid: the last two terms cancel for all but changes from step to step, which in
+   fluid of low viscosity would otherwise grow, the fluid having no pressure to pass on a torque at once.
 3. Cells that come free are filled (:mod:`lbm.refill`).
 """
 
@@ -87,6 +89,7 @@ class Spheres:
         self.centres = _vectors("position", [s.position for s in spheres])
         self.velocities = _vectors("velocity", [s.velocity for s in spheres])
         self.spins = _vectors("spin", [s.spin for s in spheres])
+        self.spin_changes = np.zeros_like(self.spins)
         self.gravity = _vectors("gravity", [gravity])[0]
         self.film, self.drive = film, drive
         self.wall_motion = WallMotion(film, contact, fraction)
@@ -177,7 +180,9 @@ class Spheres:
                 SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=_FACES[f]) for i in impacts
             ]
         self.centres[s] = centre
-        self.spins[s] += torque / (0.4 * mass * radius**2)
+        shell = 0.4 * self.volumes[s] * radius**2
+        self.spin_changes[s] = (torque + shell * self.spin_changes[s]) / (0.4 * mass * radius**2 + shell)
+        self.spins[s] += self.spin_changes[s]
         return new
 
     def describe(self) -> dict:
@@ -195,7 +200,7 @@ class Spheres:
     def state(self) -> dict[str, np.ndarray]:
         """What changes in time."""
         return {
-            "motion": np.hstack([self.centres, self.velocities, self.spins, self.forces, self.torques]),
+            "motion": np.hstack(self._moving()),
             "at_walls": np.array([self._at_walls[key].row() for key in sorted(self._at_walls)]),
             "impacts": np.array(
                 [(i.step, i.speed_in, i.speed_out, i.sphere, _FACES.index(i.face)) for i in self.impacts]
@@ -204,12 +209,12 @@ class Spheres:
             "tracks": np.array(self._tracks),
         }
 
+    def _moving(self) -> tuple[np.ndarray, ...]:
+        return self.centres, self.velocities, self.spins, self.spin_changes, self.forces, self.torques
+
     def set_state(self, state: dict[str, np.ndarray]) -> None:
         """Continue from a :meth:`state`."""
-        parts = np.hsplit(state["motion"], 5)
-        for own, saved in zip(
-            (self.centres, self.velocities, self.spins, self.forces, self.torques), parts, strict=True
-        ):
+        for own, saved in zip(self._moving(), np.hsplit(state["motion"], 6), strict=True):
             own[...] = saved
         for key, row in zip(sorted(self._at_walls), state["at_walls"].reshape(-1, STATE_SIZE), strict=True):
             self._at_walls[key] = WallState(*(float(x) for x in row))

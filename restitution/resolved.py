@@ -122,6 +122,13 @@ class ResolvedRun:
             return now >= found[0].time_s + span.after_contact
         return now >= self._longest
 
+    def _left(self) -> int:
+        """Steps to the end of the span, as far as it is known by now; at least one."""
+        span, found = self.case.run, self.contacts
+        ends = [span.duration, found[0].time_s + span.after_contact if found and span.after_contact else None]
+        end = min((e for e in ends if e is not None), default=math.inf)
+        return max(1, math.ceil(min((end - self.time_s) / self.step_s, _LONGEST_RUN)))
+
     @property
     def _longest(self) -> float:
         return _LONGEST * _fall_time(self.case)
@@ -139,6 +146,7 @@ class ResolvedRun:
             least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
             speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
             steps = int(min(max(0.5 * self.gap_d * self.flow.length / speed, 1), steps))
+        steps = min(steps, self._left())
         self._unguarded += steps
         due = self._unguarded >= _LONGEST_RUN
         with _in_our_words():

@@ -74,6 +74,8 @@ def simulate(
         spent = _resume(run, key, frames, folder)
         say(f"continues at t = {run.time_s:.4g} s")
     else:
+        if resume:
+            say(f"{folder} has no checkpoint: starts anew")
         (folder / CHECKPOINT).unlink(missing_ok=True)  # of a run that is given up
     start = saved = time.perf_counter()
     try:

@@ -71,6 +71,30 @@ def test_light_and_heavy_spheres_fall_without_oscillation(ratio):
     assert np.diff(v)[50:].max() < 0.01 * abs(v[-1])
 
 
+@pytest.mark.parametrize(("ratio", "radius"), [(1.2, 5.0), (2.17, 3.0)])
+def test_spin_of_a_light_sphere_in_fluid_of_low_viscosity_dies_out(ratio, radius):
+    flow = Simulation((24, 24, 24), Rates.two_relaxation_times(0.0017))
+    ball = Spheres([Sphere(radius, ratio, (12.0, 12.3, 12.1), spin=(0.0, 0.004, 0.0))])
+    flow.add(ball)
+    flow.run(400)
+    spin = ball.track()["wy"]
+    assert 0 < spin[-1] < 0.9 * 0.004
+    assert np.abs(np.diff(spin)[-100:]).max() < 0.02 * 0.004
+
+
+def test_slow_changes_of_spin_follow_the_torque_alone():
+    """I (omega_n - omega_0) is the sum of the torques, but for the last change of spin times I of the fluid."""
+    flow = Simulation((20, 20, 20), RATES)
+    ball = Spheres([Sphere(4.0, 2.0, (10.0, 10.0, 10.0), spin=(0.0, 0.0, 0.002))])
+    flow.add(ball)
+    flow.run(150)
+    track = ball.track()
+    inertia = 0.4 * ball.masses[0] * 16
+    gained = inertia * (track["wz"][-1] - 0.002)
+    fluid = 0.4 * ball.volumes[0] * 16 * (track["wz"][-1] - track["wz"][-2])
+    assert gained + fluid == pytest.approx(track["tz"].sum(), rel=1e-9)
+
+
 def test_sub_steps_and_place_of_contact_do_not_decide_the_rebound():
 
     def e(**options):
