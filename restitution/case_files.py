@@ -20,6 +20,8 @@ from restitution.conditions import defects_of, read_toml
 from restitution.errors import Defect, InputError
 
 FOLDER = Path(__file__).parent / "cases"
+TEMPLATE = Path(__file__).parent / "case_template.toml"
+"""An example with every key explained."""
 _KIND = {"film": "form", "contact": "mode", "release": "kind"}
 _DEEPEST = 5
 
@@ -53,6 +55,8 @@ def find(given: str | Path) -> Path:
     known = names()
     if str(given) in known:
         return FOLDER / f"{given}.toml"
+    if path.is_dir():
+        raise InputError(Defect("is a folder; name the case's TOML file", str(given)))
     near = difflib.get_close_matches(path.stem, known, n=3, cutoff=0.5)
     hint = f"did you mean {' or '.join(near)}?" if near else f"shipped: {', '.join(known)}"
     raise InputError(Defect(f"is no file and no shipped case; {hint}", str(given)))
@@ -68,7 +72,12 @@ def _content(path: Path, depth: int = 0) -> dict[str, Any]:
         rule = "must be the name of a case" if depth < _DEEPEST else f"more than {_DEEPEST} bases deep: a circle?"
         raise InputError(Defect(rule, str(path), None, "base", str(base)))
     beside = path.parent / f"{base.removesuffix('.toml')}.toml"
-    below = _content(beside if beside.is_file() else find(base), depth + 1)
+    try:
+        below = _content(beside if beside.is_file() else find(base), depth + 1)
+    except InputError as error:
+        if error.defects[0].file != base:
+            raise  # it is about what stands in the base
+        raise InputError(Defect(error.defects[0].rule, str(path), None, "base", base)) from None
     for reader in ("title", "note"):
         below.pop(reader, None)
     return _over(below, content)

@@ -1,10 +1,14 @@
 """Case files: the shipped ones, what they take from records and bases, and bad ones met field by field."""
 
+import re
+
 import pytest
 
 from restitution import case_files, datasets
+from restitution.case import ContactModel, FilmModel, Numerics, Release, Span
 from restitution.case_rules import rebound_height_d
 from restitution.cli import main
+from restitution.conditions import Fluid, Sphere, Wall
 from restitution.errors import InputError
 
 GOOD = """
@@ -166,3 +170,26 @@ def test_a_template_can_be_read_again_and_replaces_nothing(tmp_path, capsys):
     own, shipped = case_files.read_case(mine), case_files.read_case("gondret_st27")
     assert own.model_copy(update={"name": shipped.name}) == shipped
     assert main(["simulate", "gondret_st27", "--template", str(mine)]) == 2
+
+
+def test_the_example_can_be_run_and_has_every_key(tmp_path):
+    """Each field of a case stands in it, behind a # or not."""
+    assert main(["simulate", "--template", str(tmp_path / "mine.toml")]) == 0
+    text = (tmp_path / "mine.toml").read_text()
+    case_files.read_case(tmp_path / "mine.toml")
+    for model in (Fluid, Sphere, Wall, Release, Numerics, FilmModel, ContactModel, Span):
+        for name in model.model_fields:
+            assert re.search(rf"^(# )?{name} = ", text, re.MULTILINE), f"{model.__name__}.{name}"
+
+
+def test_results_of_one_model_do_not_replace_those_of_the_other(tmp_path, capsys):
+    (tmp_path / "run.json").write_text('{"case": "gondret_st27"}')
+    assert main(["bounce", "gondret_st27", "--out", str(tmp_path)]) == 2
+    assert str(tmp_path) in capsys.readouterr().err
+    assert [p.name for p in tmp_path.iterdir()] == ["run.json"]
+
+
+def test_a_base_that_is_not_there_is_named_with_file_and_field(tmp_path, capsys):
+    (tmp_path / "mine.toml").write_text('base = "nowhere"\n')
+    assert main(["simulate", str(tmp_path / "mine.toml")]) == 2
+    assert f"{tmp_path / 'mine.toml'}: base = 'nowhere'" in capsys.readouterr().err

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from restitution.console import show
 
@@ -23,9 +22,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "case", metavar="CASE", help="a TOML file, or the name of a shipped case (see 'simulate --list')"
     )
-    parser.add_argument(
-        "--out", metavar="FOLDER", help="where to write the results (a folder named after the case)"
-    )
+    parser.add_argument("--out", metavar="FOLDER", help="where to write the results (CASE_point_particle)")
     parser.set_defaults(run=run)
 
 
@@ -36,37 +33,18 @@ def run(args: argparse.Namespace) -> int | None:
 
     from restitution.bounce import IntegrationError
     from restitution.case_files import read_case
-    from restitution.errors import Defect, InputError
+    from restitution.commands.results import POINT_PARTICLE, folder_for, show_contacts
     from restitution.point_particle import predict, write
 
     case = read_case(args.case)
-    if args.out == "":
-        raise InputError(Defect("names no folder", field="--out"))
-    folder, began = Path(args.out or case.name), time.perf_counter()
+    folder = folder_for(args.out, f"{case.name}_point_particle", POINT_PARTICLE)
+    began = time.perf_counter()
     try:
         prediction = predict(case, args.case)
     except IntegrationError as error:
         print(f"error: {args.case}: {error}", file=sys.stderr)  # noqa: T201
         return 2
     write(prediction, folder, time.perf_counter() - began)
-    _report(prediction.contacts, prediction.path.apexes() * 1e3)
+    show_contacts(prediction.contacts, list(prediction.path.apexes() * 1e3))
     show(f"results in {folder}")
     return None
-
-
-def _report(contacts: list[dict[str, float]], apexes_mm: list[float]) -> None:
-    """Print the contacts and the height that follows each."""
-    from restitution.console import show_rows
-
-    rows = [
-        (
-            f"{i}", f"{c['time_s'] * 1e3:.2f}", f"{c['speed_in_m_s']:.4f}", f"{c['speed_out_m_s']:.4f}",
-            f"{apexes_mm[i - 1]:.3f}" if i <= len(apexes_mm) else "",
-        )
-        for i, c in enumerate(contacts[:12], 1)
-    ]  # fmt: skip
-    if rows:
-        headings = ("contact", "time ms", "speed in m/s", "speed out m/s", "apex mm")
-        show_rows(headings, rows, right=("contact", "apex mm"))
-    else:
-        show("no contact")

@@ -29,7 +29,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--list", action="store_true", help="list the shipped cases")
     parser.add_argument(
-        "--template", metavar="FILE", help="copy the case to FILE, to start from, instead of running it"
+        "--template",
+        metavar="FILE",
+        help="write a case to FILE to start from, instead of running it: a copy of CASE, or an example with every "
+        "key explained",
     )
     parser.set_defaults(run=run)
 
@@ -38,23 +41,24 @@ def run(args: argparse.Namespace) -> int | None:
     """Run a case and say what came out."""
     import sys
 
-    from restitution.case_files import read_case
-    from restitution.errors import Defect, InputError, StoppedError
+    from restitution.case_files import TEMPLATE, find, read_case
+    from restitution.commands.results import RESOLVED, folder_for
+    from restitution.errors import InputError, StoppedError
+    from restitution.simulate import CHECKPOINT, simulate
 
     if args.list:
         _list()
+        return None
+    if args.template is not None and not args.case:
+        _write_template(TEMPLATE, Path(args.template))
         return None
     if not args.case:
         raise InputError("name a case: a TOML file or a shipped one ('restitution simulate --list')")
     case = read_case(args.case)
     if args.template is not None:
-        _write_template(args.case, Path(args.template))
+        _write_template(find(args.case), Path(args.template))
         return None
-    if args.out == "":
-        raise InputError(Defect("names no folder", field="--out"))
-    from restitution.simulate import simulate
-
-    folder = Path(args.out or case.name)
+    folder = folder_for(args.out, case.name, RESOLVED)
 
     def say(text: str) -> None:
         print(text, file=sys.stderr)  # noqa: T201
@@ -65,7 +69,8 @@ def run(args: argparse.Namespace) -> int | None:
         say(f"error: {error}; the trajectory so far is in {folder / 'trajectory_so_far.csv'}")
         return 2
     except KeyboardInterrupt:
-        say(f"stopped; continue with: restitution simulate {args.case} --out {folder} --resume")
+        if (folder / CHECKPOINT).exists():
+            say(f"stopped; continue with: restitution simulate {args.case} --out {folder} --resume")
         raise
     _report(folder)
     return None
@@ -81,30 +86,29 @@ def _list() -> None:
     )
 
 
-def _write_template(given: str, target: Path) -> None:
-    from restitution.case_files import find
+def _write_template(case: Path, target: Path) -> None:
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 
     if target.exists():
         raise InputError(Defect("exists already; a template replaces nothing", str(target)))
-    write_whole(target, find(given).read_text("utf-8"))
+    write_whole(target, case.read_text("utf-8"))
     show(f"{target}: next: restitution simulate {target} --out results")
 
 
 def _report(folder: Path) -> None:
-    """Print the contacts as the solver had them, and where the tables are."""
+    """Print the contacts as the solver had them, the heights between them, and where the tables are."""
     import json
+    from itertools import pairwise
 
-    from restitution.console import show_rows
+    import pandas as pd
+
+    from restitution.commands.results import show_contacts
 
     about = json.loads((folder / "run.json").read_text())
-    rows = [
-        (f"{i}", f"{c['time_s'] * 1e3:.2f}", f"{c['speed_in_m_s']:.4f}", f"{c['speed_out_m_s']:.4f}")
-        for i, c in enumerate(about["contacts"][:12], 1)
+    track, times = pd.read_csv(folder / "trajectory.csv"), [c["time_s"] for c in about["contacts"]]
+    between = [
+        track.gap_m[(track.time_s > a) & (track.time_s < b)] for a, b in zip(times, times[1:], strict=False)
     ]
-    if rows:
-        show_rows(("contact", "time ms", "speed in m/s", "speed out m/s"), rows, right=("contact",))
-    else:
-        show("no contact")
+    show_contacts(about["contacts"], [1e3 * gap.max() for gap in between if len(gap)])
     show(f"{about['steps']} steps in {about['seconds']:.0f} s; results in {folder}")

@@ -1,0 +1,51 @@
+"""Folders of results: what two commands that write them share."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from restitution.console import show, show_rows
+from restitution.errors import Defect, InputError
+
+RESOLVED, POINT_PARTICLE = "resolved", "point particle"
+_SHOWN = 12
+
+
+def folder_for(given: str | None, default: str, model: str) -> Path:
+    """Where the results go; raises :class:`InputError` for what is no folder or holds those of another model."""
+    if given == "":
+        raise InputError(Defect("names no folder", field="--out"))
+    folder = Path(given or default)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(Defect("is no folder", str(folder), None, "--out"))
+    found = _model(folder)
+    if found not in (None, model):
+        raise InputError(Defect(f"holds results of the other model, {found}: choose another folder", str(folder)))
+    return folder
+
+
+def _model(folder: Path) -> str | None:
+    """Which model made the results in a folder; None where there are none that can be read."""
+    try:
+        return json.loads((folder / "run.json").read_text("utf-8")).get("model", RESOLVED)
+    except (OSError, ValueError, AttributeError):
+        return None
+
+
+def show_contacts(contacts: list[dict[str, float]], apexes_mm: list[float]) -> None:
+    """Print the first contacts and the height that follows each."""
+    rows = [
+        (
+            f"{i}", f"{c['time_s'] * 1e3:.2f}", f"{c['speed_in_m_s']:.4f}", f"{c['speed_out_m_s']:.4f}",
+            f"{apexes_mm[i - 1]:.3f}" if i <= len(apexes_mm) else "",
+        )
+        for i, c in enumerate(contacts[:_SHOWN], 1)
+    ]  # fmt: skip
+    if not rows:
+        show("no contact")
+        return
+    headings = ("contact", "time ms", "speed in m/s", "speed out m/s", "apex mm")
+    show_rows(headings, rows, right=("contact", "apex mm"))
+    if len(contacts) > _SHOWN:
+        show(f"and {len(contacts) - _SHOWN} more, in run.json")
