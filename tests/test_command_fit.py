@@ -1,6 +1,8 @@
 """``restitution fit``, ``compare``, ``predict`` and ``design`` as a user meets them."""
 
+import itertools
 import json
+import re
 import subprocess
 import sys
 import warnings
@@ -10,6 +12,7 @@ import pandas as pd
 import pytest
 from fits import K
 
+from restitution.calibration.design import candidates
 from restitution.calibration.fit_result import read_fit
 from restitution.cli import main
 
@@ -123,10 +126,36 @@ def test_design_prefers_where_the_law_is_sensitive(case):
     status, out, _ = case("design", "fit.json", "--rows", "1", "--plot", "gain.svg")
     assert status == 0
     # dK narrows most where |df/dK| = 1.97 f/St is greatest: St = 1.97 K, by hand
-    St = float(out.splitlines()[2].split()[-5])
+    St = float(out.splitlines()[3].split()[-5])
     assert St == pytest.approx(1.97 * K, rel=0.1)
     assert (case.folder / "gain.svg").stat().st_size > 1000
-    assert case("design", "fit.json", "--parameter", "beta")[0] == 2
+    for options in (["--parameter", "beta"], ["--at", "0"], ["--at", "1e-3"], ["--e-dry", "3"], ["--rows", "0"]):
+        assert case("design", "fit.json", *options)[0] == 2, options
+
+
+def test_design_lists_each_pair_once_and_each_condition_once(case):
+    name = write(case, rows(sigma=0.005))
+    case("fit", name, "--out", "fit.json")
+    _, out, _ = case("design", "fit.json", "--rows", "999")
+    pairs = [re.match(r".* mm ", line)[0].split() for line in out.splitlines()[3:]]
+    assert len(pairs) == len({tuple(pair) for pair in pairs}) > 20
+    for one, other in itertools.pairwise(candidates()):
+        if (one.fluid, one.sphere) == (other.fluid, other.sphere):
+            assert other.speed > 1.02 * one.speed
+
+
+@pytest.mark.parametrize("place", ["nowhere/fit.json", "my.csv", "."])
+def test_what_cannot_be_written_is_named_as_the_user_named_it(case, place):
+    name = write(case, rows())
+    before = (case.folder / name).read_bytes()
+    laws = ["--law", "eq4_exponential", "--out", place]
+    for command in ("fit", "compare"):
+        status, out, error = case(command, name, *laws)
+        assert (status, out) == (2, "")
+        assert error.startswith(f"error: {place}: ")
+        assert ".part" not in error
+    assert (case.folder / name).read_bytes() == before
+    assert [p.name for p in case.folder.iterdir()] == [name]
 
 
 def test_compare_finds_the_law_and_says_when_it_cannot(case):

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from restitution.commands import fit
+from restitution.commands import fit, options
 from restitution.console import show, show_rows
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def run(args: argparse.Namespace) -> None:
 
     if not args.data:
         raise InputError("name the data: CSV files or shipped records")
+    options.check_output("--out", args.out, args.data)
     observations = read(args.data, fit.reading_of(args))
     plans = []
     wanted = args.law or laws.names("rebound")

@@ -214,11 +214,9 @@ def run(args: argparse.Namespace) -> None:
 
     if not args.data:
         raise InputError("name the data: CSV files or shipped records (--template FOLDER writes an example)")
-    for option, given in (("--out", args.out), ("--report", args.report)):
-        if given == "":
-            raise InputError(Defect("names no file", field=option))
-    if args.out and any(Path(args.out).resolve() == Path(d).resolve() for d in args.data if Path(d).exists()):
-        raise InputError(Defect("would replace an input", args.out, None, "--out"))
+    options.check_output("--out", args.out, args.data)
+    if args.report == "":
+        raise InputError(Defect("names no folder", field="--report"))
     observations = read(args.data, reading_of(args))
     fit = estimate(plan_of(args, args.law, args.law_stokes or observations.convention), observations)
     chain = None

@@ -8,7 +8,7 @@ import numpy as np
 
 from restitution.calibration.fit_result import FitResult, sources
 from restitution.calibration.prediction import predict
-from restitution.report.drawing import Drawing, save, style
+from restitution.report.drawing import Drawing, save, stokes_axis, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +28,7 @@ def draw(result: FitResult) -> Drawing:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         _law(upper, result)
         _impacts(upper, lower, result)
-        upper.set_xscale("log")
+        stokes_axis(upper)
         highest = max([1.0, *(p.e_eff for p in result.points if p.e_eff is not None)])
         upper.set_ylim(min(0.0, *(p.e_eff for p in result.points if p.e_eff is not None)), 1.04 * highest)
         upper.set_ylabel(r"$e_{\mathrm{eff}}$  [-]")
