@@ -292,6 +292,38 @@ def test_bad_input_is_one_clear_line_and_nothing_is_written(case, kind):
     assert {p.name for p in case.folder.iterdir()} == {"my.csv"}
 
 
+def test_all_defects_of_all_files_are_named_at_once(case):
+    """By row: what the form of the table, and what the rules between its columns, have against it."""
+    header = HEADER.strip() + ",outcome\n"
+    wrong = [
+        "30,st,far,0.97,1.3,0.01,",  # e_eff above 1
+        "abc,st,far,0.97,0.3,0.01,",  # no number
+        "30,st,contact,0.97,0.3,-1,",  # another speed, a negative error
+        "30,st_star,far,0.97,,0.01,",  # another convention, no e_eff
+        ",st,far,1.7,0.3,0.01,",  # no St, e_dry above 1
+        "30,st,far,0.97,0.3,0.01,no_rebound",  # e_eff without a rebound
+        "30,,far,0.97,0.3,0.01,bounced",  # no convention, no such outcome
+        "30,st,far",
+    ]
+    write(case, ["152,st,far,0.97,0.8,0.01,", *wrong], "one.csv", header)
+    write(case, ["152,st,far,0.97,-0.8,0.01"], "two.csv")
+    status, _, error = case("fit", "one.csv", "two.csv", "three.csv")
+    named = [re.match(r"error: (\w+).csv(?::(\d+))?(?:: (\w+))?", line).groups() for line in error.splitlines()]
+    assert status == 2
+    assert [(row, field) for file, row, field in named if file == "one"] == [
+        ("3", "e_eff"), ("4", "stokes"), ("5", "e_eff_sigma"), ("5", "speed_definition"),
+        ("6", "stokes_convention"), ("6", "e_eff"), ("7", "e_dry"), ("7", "stokes"), ("8", "e_eff"),
+        ("9", "outcome"), ("9", "stokes_convention"), ("10", "has"),
+    ]  # fmt: skip
+    assert [file for file, _, _ in named][-2:] == ["two", "three"]
+
+
+def test_a_file_counts_once(case):
+    name = write(case, rows())
+    status, _, error = case("fit", name, name)
+    assert (status, "twice" in error) == (2, True)
+
+
 def test_unphysical_restitution_with_the_flag(case):
     write(case, [*GOOD, "380,st,far,0.97,1.02,0.1"])
     assert case("fit", "my.csv", "--allow-unphysical")[0] == 0

@@ -13,7 +13,7 @@ from restitution.console import show, show_facts
 
 if TYPE_CHECKING:
     from restitution.calibration.fitting import Plan
-    from restitution.calibration.impact_data import Reading
+    from restitution.calibration.impact_table import Reading
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -129,7 +129,7 @@ def _prior(text: str) -> tuple[str, tuple[float, float]]:
 
 def reading_of(args: argparse.Namespace) -> Reading:
     """How the files are read, from the options."""
-    from restitution.calibration.impact_data import Reading
+    from restitution.calibration.impact_table import Reading
     from restitution.conditions import read_conditions
     from restitution.stokes import Speed, convention
 
