@@ -20,9 +20,10 @@ from pathlib import Path
 
 import numpy as np
 
-from restitution.calibration.fitting import Plan, estimate
+from restitution.calibration.fitting import estimate
 from restitution.calibration.maximum import LEVELS
 from restitution.calibration.observations import Observations
+from restitution.calibration.plan import Plan
 from restitution.calibration.rebound_model import model_of
 from restitution.errors import InputError
 from restitution.stokes import Speed
@@ -56,7 +57,8 @@ CASES = (
 
 def draw(case: Case, n: int, seed: int) -> Observations:
     """One set; every set has its own stream of random numbers."""
-    rng = np.random.default_rng([CASES.index(case), n, seed])
+    stream = CASES.index(case) if case in CASES else len(CASES)
+    rng = np.random.default_rng([stream, n, seed])
     St = np.exp(rng.uniform(np.log(15), np.log(500), n))
     source = np.arange(n) % 2 if case.offset else np.zeros(n, int)
     e = E_DRY * np.exp(-K * (1 + E_DRY) / St) + np.hypot(E_SIGMA, case.scatter) * rng.standard_normal(n)

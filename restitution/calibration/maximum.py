@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.parameters import Parameter, log_prior
+from restitution.calibration.parameters import Normal, Parameter, log_prior
 from restitution.errors import Defect, InputError
 
 LEVELS = (0.68, 0.95)
@@ -75,12 +75,13 @@ def maximise(
     parameters = tuple(parameters)
     start = np.array([p.start for p in parameters]) if start is None else np.asarray(start, float)
     outward = [p.outward for p in parameters]
+    measured = any(isinstance(p.prior, Normal) for p in parameters)
 
     def function(x: NDArray) -> float:
         if not np.isfinite(x).all():
             return HUGE
         values = np.array([out(v) for out, v in zip(outward, x, strict=True)])
-        total = negative_log(values) - log_prior(parameters, values, every=False)
+        total = negative_log(values) - (log_prior(parameters, values, every=False) if measured else 0.0)
         return total if total < HUGE else HUGE
 
     first = np.array([p.inward(v) for p, v in zip(parameters, start, strict=True)])

@@ -21,9 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
-from restitution.calibration.fitting import Fit, Plan, estimate
+from restitution.calibration.fitting import Fit, estimate
 from restitution.calibration.likelihood import OFFSET, Likelihood
 from restitution.calibration.observations import Observations
+from restitution.calibration.plan import Plan
 from restitution.errors import InputError
 
 LEAST_DIFFERENCE, STANDARD_ERRORS = 4.0, 2.0

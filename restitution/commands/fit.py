@@ -12,8 +12,8 @@ from restitution.commands import options
 from restitution.console import show, show_facts
 
 if TYPE_CHECKING:
-    from restitution.calibration.fitting import Plan
     from restitution.calibration.impact_table import Reading
+    from restitution.calibration.plan import Plan
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -147,7 +147,7 @@ def reading_of(args: argparse.Namespace) -> Reading:
 
 def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, strict: bool = True) -> Plan:
     """What is estimated, from the options; without ``strict`` those that the law does not know are left out."""
-    from restitution.calibration.fitting import Plan
+    from restitution.calibration.plan import Plan
     from restitution.calibration.rebound_model import model_of
 
     bounds = dict(args.bounds)
@@ -206,7 +206,8 @@ def run(args: argparse.Namespace) -> None:
         for line in write_template(Path(args.template)):
             show(line)
         return
-    from restitution.calibration.fit_result import describe, result_of
+    from restitution.calibration.fit_result import result_of
+    from restitution.calibration.fit_summary import describe
     from restitution.calibration.fitting import estimate
     from restitution.calibration.impact_data import read
     from restitution.errors import Defect, InputError
