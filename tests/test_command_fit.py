@@ -176,7 +176,7 @@ def test_compare_finds_the_law_and_says_when_it_cannot(case):
     assert table.loc["eq4_linear", "separated"] == "yes"
     # The same curve under another name: nothing can separate them.
     assert "do not separate: " in out
-    assert abs(table.loc["eq4_exponential", "AIC"] - table.loc["e_dry*exp(-b/St)", "AIC"]) < 0.1
+    assert abs(table.loc["eq4_exponential", "aic"] - table.loc["e_dry*exp(-b/St)", "aic"]) < 0.1
 
 
 def test_own_formula_and_posterior(case):

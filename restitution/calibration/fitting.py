@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,14 +32,15 @@ class Fit:
 def estimate(
     plan: Plan,
     observations: Observations,
-    intervals: bool = True,
+    intervals: bool | Collection[str] = True,
     restricted: bool = True,
     near: Maximum | None = None,
     covariance: bool = True,
 ) -> Fit:
     """Maximum (restricted) likelihood. ``restricted=False`` gives the plain maximum, whose value ranks laws.
 
-    ``near`` is the estimate of a similar fit with the same parameters, to start from.
+    ``intervals`` may name the parameters that are to have one. ``near`` is the estimate of a similar
+    fit with the same parameters, to start from.
     """
     likelihood = plan.likelihood(observations)
     parameters = likelihood.parameters
@@ -66,8 +68,12 @@ def estimate(
     check_bounds(found)
     if restriction is not None:
         freedom[mean] = restriction.degrees_of_freedom(found.values)
-    rises = Thresholds({level: [threshold(level, nu) for nu in freedom] for level in LEVELS})
-    found = maximise(function, parameters, found.values, rises)
+    wanted = [intervals is True or p.name in intervals for p in parameters]
+    rises = {
+        level: [threshold(level, nu) if want else None for nu, want in zip(freedom, wanted, strict=True)]
+        for level in LEVELS
+    }
+    found = maximise(function, parameters, found.values, Thresholds(rises))
     return Fit(plan, likelihood, found, freedom, restriction is not None, _notes(likelihood, found))
 
 

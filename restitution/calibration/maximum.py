@@ -52,9 +52,9 @@ class Maximum:
 
 @dataclass(frozen=True)
 class Thresholds:
-    """By how much -2 ln L rises to the ends of an interval: by level, one number a parameter."""
+    """By how much -2 ln L rises to the ends of an interval: by level, one number a parameter; None: do without."""
 
-    rise: Mapping[float, Sequence[float]]
+    rise: Mapping[float, Sequence[float | None]]
 
 
 def maximise(
@@ -130,10 +130,12 @@ def _step(p: Parameter, x: float) -> float:
     return min(0.1 * abs(x) if x else reach, reach) or 0.1
 
 
-def _interval(minuit, p: Parameter, rise: float) -> tuple[tuple[float, float], tuple[bool, bool]]:
+def _interval(minuit, p: Parameter, rise: float | None) -> tuple[tuple[float, float], tuple[bool, bool]]:
     """Where the profile of -2 ln L has risen by ``rise`` on both sides of the maximum, or the bounds."""
     from scipy.stats import chi2
 
+    if rise is None:
+        return (np.nan, np.nan), (False, False)
     # MINUIT takes a confidence level; this is the one whose chi^2 quantile is the rise.
     minuit.minos(p.name, cl=float(chi2.cdf(rise, 1)))
     found = minuit.merrors[p.name]

@@ -1,8 +1,9 @@
 """e_eff at given conditions, with its interval: that of the law, and that of one more impact.
 
 Linear propagation of the covariance of the parameters, J C J^T, with Student's t of the least degrees of freedom
-of them; where the fit has a posterior, its draws take the place of both. One more impact, by another particle in
-another set-up, has scatter and source offset on top.
+of them. One more impact, by another particle in another set-up, has scatter and source offset on top, each with
+its own t: a standard deviation tau known to sigma_tau has tau^2/(2 sigma_tau^2) degrees of freedom; half-widths
+add in squares, which is exact for normal errors. Where the fit has a posterior, its draws take the place of all.
 """
 
 from __future__ import annotations
@@ -51,12 +52,13 @@ def predict(
     value = law(St, law.values)
     J = law.jacobian(St)
     sigma = np.sqrt(np.einsum("ij,jk,ik->i", J, law.covariance, J))
-    noise = np.hypot(result.deviation(SCATTER), result.deviation(OFFSET))
     if result.posterior is not None:
         intervals, more = _from_draws(law, St, result, seed)
     else:
-        intervals = {f"{x:.0%}": _normal(value, sigma, law.quantile(x)) for x in LEVELS}
-        more = {f"{x:.0%}": _normal(value, np.hypot(sigma, noise), law.quantile(x)) for x in LEVELS}
+        half = {x: sigma * quantile(x, law.freedom) for x in LEVELS}
+        noise = {x: np.hypot(*(_half_width(result, name, x) for name in (SCATTER, OFFSET))) for x in LEVELS}
+        intervals = {f"{x:.0%}": _around(value, half[x]) for x in LEVELS}
+        more = {f"{x:.0%}": _around(value, np.hypot(half[x], noise[x])) for x in LEVELS}
     return Prediction(St, value, sigma, intervals, more, _warnings(result, St, law.e_dry))
 
 
@@ -130,12 +132,22 @@ class Evaluation:
             J[:, j] = (self(St, above) - self(St, below)) / (above[j] - below[j])
         return J
 
-    def quantile(self, level: float) -> float:
-        """Of Student's t, or of the normal."""
-        from scipy.stats import norm, t
 
-        half = 0.5 * (1 + level)
-        return float(norm.ppf(half) if np.isinf(self.freedom) else t.ppf(half, self.freedom))
+def quantile(level: float, freedom: float) -> float:
+    """Half the width of a central interval of Student's t, or of the normal, in standard errors."""
+    from scipy.stats import norm, t
+
+    half = 0.5 * (1 + level)
+    return float(norm.ppf(half) if np.isinf(freedom) else t.ppf(half, freedom))
+
+
+def _half_width(result: FitResult, name: str, level: float) -> float:
+    """Of the scatter or the source offset of one more impact; 0 where it was not estimated, or is 0."""
+    found = next((p for p in result.parameters if p.name == name), None)
+    if found is None or not found.value > 0:
+        return 0.0
+    freedom = 1.0 if found.sigma is None else max(0.5 * (found.value / found.sigma) ** 2, 1.0)
+    return found.value * quantile(level, freedom)
 
 
 def _ratio(result: FitResult, convention: str, conditions: Conditions | None) -> float:
@@ -146,8 +158,8 @@ def _ratio(result: FitResult, convention: str, conditions: Conditions | None) ->
     return StokesNumber(1.0, result.stokes_convention).to(convention, conditions).value
 
 
-def _normal(value: NDArray, sigma: NDArray, quantile: float) -> NDArray:
-    return np.stack([value - quantile * sigma, value + quantile * sigma], axis=1)
+def _around(value: NDArray, half: NDArray) -> NDArray:
+    return np.stack([value - half, value + half], axis=1)
 
 
 def _from_draws(
