@@ -13,6 +13,7 @@ wrong, nor that more data also tell the scatter.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -88,6 +89,13 @@ class Target:
     stokes: float | None = None
 
 
+def levels_of(result: FitResult, target: Target, levels: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The levels of separate parameters that a target is about: those given, else that of the parameter itself."""
+    name, _, level = (target.parameter or "").partition("[")
+    own = {result.separate[name]: level.removesuffix("]")} if level and name in result.separate else {}
+    return own | dict(levels or {})
+
+
 class Design:
     """Expected gains of a fit for one target."""
 
@@ -100,10 +108,14 @@ class Design:
         e_sigma: float | None = None,
         stokes_sigma: float | None = None,
         same_source: bool = False,
+        levels: Mapping[str, str] | None = None,
     ):
-        """``e_sigma`` and ``stokes_sigma`` (relative) of a new impact; by default those typical of the fit."""
-        self.result, self.e_dry = result, e_dry
-        self.law = Evaluation(result, e_dry, conditions)
+        """``e_sigma`` and ``stokes_sigma`` (relative) of a new impact; by default those typical of the fit.
+
+        ``levels`` of separate parameters, as ``{"material": "steel"}``.
+        """
+        self.result, self.e_dry, self.levels = result, e_dry, levels_of(result, target, levels)
+        self.law = Evaluation(result, e_dry, conditions, self.levels)
         if not self.law.names:
             raise InputError("the fit has no free parameter of the law: there is nothing to narrow")
         self.target = self._direction(target)
@@ -158,7 +170,7 @@ class Design:
             St = stokes_of(self.result, np.array([option.speed]), option.conditions)
             if not all_stokes and not low <= St[0] <= high:
                 continue
-            law = Evaluation(self.result, self.e_dry, option.conditions)
+            law = Evaluation(self.result, self.e_dry, option.conditions, self.levels)
             ratios = tuple(float(self.ratio(St, m, law)[0]) for m in shots)
             gains.append(Gain(option, float(St[0]), float(law(St, law.values)[0]), ratios))
         return sorted(gains, key=lambda gain: gain.ratio[-1])

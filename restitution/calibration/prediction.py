@@ -91,7 +91,9 @@ class Evaluation:
         if e_dry is None and "e_dry" not in chosen and conditions is not None:
             e_dry = conditions.sphere.e_dry
         if "e_dry" not in chosen and e_dry is None:
-            raise InputError(Defect("is needed: it was not estimated (--sphere ...,e_dry=0.97)", field="e_dry"))
+            raise InputError(
+                Defect("is needed: it was not estimated (--e-dry 0.97, or --sphere ...,e_dry=0.97)", field="e_dry")
+            )
         if e_dry is not None and not 0 < e_dry <= 1:
             raise InputError(Defect("must lie above 0 and be at most 1", field="e_dry", value=f"{e_dry:g}"))
         self.e_dry = chosen.get("e_dry", e_dry)

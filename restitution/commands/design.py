@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import statistics
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
@@ -11,6 +12,7 @@ from restitution.console import show, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.design import Gain
+    from restitution.calibration.fit_result import FitResult
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -38,6 +40,14 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="release heights in m (0.01,0.05,0.2)",
     )
     parser.add_argument("--all", action="store_true", help="every release height, not only the best of each pair")
+    parser.add_argument(
+        "--level",
+        action="append",
+        default=[],
+        type=options.pair,
+        metavar="COLUMN=NAME",
+        help="of separate parameters (default: that of --parameter)",
+    )
     parser.add_argument("--e-sigma", type=float, metavar="S", help="error of a new e_eff (default: as in the fit)")
     parser.add_argument("--st-sigma", type=float, metavar="S", help="relative error of a new St (as in the fit)")
     parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
@@ -77,9 +87,10 @@ def run(args: argparse.Namespace) -> None:
     experiments = design.candidates(args.pairs or design.PAIRS, tuple(args.height))
     first = next((p.name for p in result.parameters if p.mean), None)
     target = design.Target(None if args.at is not None else args.parameter or first, args.at)
-    e_dry = args.e_dry if args.e_dry is not None else _typical_e_dry(result)
+    levels = design.levels_of(result, target, dict(args.level))
+    e_dry = args.e_dry if args.e_dry is not None else _typical_e_dry(result, levels)
     plan = design.Design(
-        result, target, e_dry, experiments[0].conditions, args.e_sigma, args.st_sigma, args.same_source
+        result, target, e_dry, experiments[0].conditions, args.e_sigma, args.st_sigma, args.same_source, levels
     )
     gains = plan.rank(experiments, args.shots, args.beyond)
     if not gains:
@@ -103,10 +114,10 @@ def run(args: argparse.Namespace) -> None:
         show(f"... {len(rows) - args.rows} more: --rows {len(rows)}")
 
 
-def _typical_e_dry(result) -> float | None:
-    """The middle of what the fitted impacts had, where e_dry was not estimated."""
-    low, high = result.e_dry_range
-    return 0.5 * (low + high) if high < 1.0 or low == high else None
+def _typical_e_dry(result: FitResult, levels: dict[str, str]) -> float | None:
+    """The median of what the fitted impacts of these levels had, where it was not estimated."""
+    known = [p.e_dry for p in result.points if p.e_dry is not None and levels.items() <= p.levels.items()]
+    return statistics.median(known) if known else None
 
 
 def _show(gains: list[Gain], shots: tuple[int, ...]) -> None:
