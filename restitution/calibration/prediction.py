@@ -176,7 +176,7 @@ def _from_draws(
     for name in (SCATTER, OFFSET):
         if name in chain.names:
             noise = np.hypot(noise, draws[:, chain.names.index(name)])
-    more = f + noise[:, None] * rng.standard_normal(f.shape)
+    more = f + (noise * rng.standard_normal(len(draws)))[:, None]  # one impact a draw, moved along St
 
     def central(x: NDArray, level: float) -> NDArray:
         return np.quantile(x, [0.5 * (1 - level), 0.5 * (1 + level)], axis=0).T

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MARKERS = "osD^vP<>Xph*"
 DASHES = ("-", (0, (6, 2)), (0, (1, 1.2)), (0, (3, 1.5, 1, 1.5)))
 MOST_NAMES = 12
-"""Sources named in the legend; of more the markers repeat."""
+"""Sources, or levels of separate parameters, named in the legend; of more the markers repeat."""
 
 
 def draw(result: FitResult) -> Drawing:
@@ -61,9 +61,11 @@ def _law(ax: Axes, result: FitResult) -> None:
 
 
 def _impacts(upper: Axes, lower: Axes, result: FitResult) -> None:
-    names = sources(result)
+    many = len(sources(result)) > 1
+    named = [", ".join([*([p.source] if many else []), *p.levels.values()]) for p in result.points]
+    names = list(dict.fromkeys(named))
     for k, name in enumerate(names):
-        points = [p for p in result.points if p.source == name]
+        points = [p for p, own in zip(result.points, named, strict=True) if own == name]
         seen = [p for p in points if p.e_eff is not None]
         limits = [p for p in points if p.e_eff is None and p.e_eff_upper < (p.e_dry or 1.0)]
         marker, face = MARKERS[k % len(MARKERS)], ("black", "white")[(k // len(MARKERS) + k) % 2]
