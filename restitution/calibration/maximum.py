@@ -171,7 +171,15 @@ def _search(minuit, p: Parameter, rise: float, side: int) -> float | None:
     profile.limits = minuit.limits
     profile.fixed[p.name] = True
 
+    known = {best: -rise}
+
     def excess(x: float) -> float:
+        # A profile is a search of its own and repeats itself to rounding only: a bracket must keep its signs.
+        if x not in known:
+            known[x] = at(x)
+        return known[x]
+
+    def at(x: float) -> float:
         for name in minuit.parameters:
             profile.values[name] = minuit.values[name]
             profile.errors[name] = minuit.errors[name]
