@@ -9,52 +9,73 @@ from pathlib import Path
 from restitution.errors import Defect, InputError
 
 
+def check_place(path: str | Path) -> None:
+    """Raise :class:`InputError` where a file could not be written, before the work that it is for is done."""
+    place = Path(path)
+    if place.is_dir():
+        raise InputError(Defect("cannot be written: it is a folder", str(path)))
+    if not place.parent.is_dir():
+        raise InputError(Defect(f"cannot be written: there is no folder {place.parent}", str(path)))
+    if not os.access(place.parent, os.W_OK):
+        raise InputError(Defect(f"cannot be written: the folder {place.parent} is not writable", str(path)))
+
+
 def write_whole(path: str | Path, content: str | bytes) -> None:
     """Write one file aside in its folder, which must exist, then rename it into place; links are followed.
 
-    Raises :class:`InputError` where that cannot be done; then nothing is changed.
+    Raises :class:`InputError` naming ``path`` where that cannot be done; then nothing is changed.
     """
-    path = Path(path)
+    check_place(path)
     try:
-        path = path.resolve()
-        if path.exists() and not path.is_file():
+        target = Path(path).resolve()
+        if target.exists() and not target.is_file():
             raise InputError(Defect("is not a regular file", str(path)))
-        _write(path.parent, {path.name: content})
     except OSError as error:
         raise _defect(error, path) from None
+    _write({str(path): (target, content)})
 
 
 def write_folder(folder: str | Path, contents: Mapping[str, str | bytes]) -> None:
     """Write several files into ``folder``, made if need be: all are written aside first, then renamed in turn."""
     folder, made = Path(folder), []
+    if folder.exists() and not folder.is_dir():
+        raise InputError(Defect("is not a folder", str(folder)))
     try:
         made = [place for place in (folder, *folder.parents) if not place.exists()]
         folder.mkdir(parents=True, exist_ok=True)
-        _write(folder, contents)
-    except OSError as error:
+        _write({str(folder / name): (folder / name, content) for name, content in contents.items()})
+    except (OSError, InputError) as error:
         for place in made:
             if place.is_dir() and not any(place.iterdir()):
                 place.rmdir()
+        if isinstance(error, InputError):
+            raise
         raise _defect(error, folder) from None
 
 
-def _write(folder: Path, contents: Mapping[str, str | bytes]) -> None:
-    aside: list[tuple[Path, Path]] = []
+def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
+    """Write to targets, which the caller knows by the names that are the keys."""
+    aside: list[tuple[str, Path, Path]] = []
     try:
-        for name, content in contents.items():
-            target = folder / name
+        for name, (target, content) in contents.items():
             if target.is_dir():
-                raise IsADirectoryError(None, "is a folder", str(target))
-            temporary = folder / f".{name}.{os.getpid()}.part"
-            with temporary.open("xb") as stream:
-                aside.append((temporary, target))
-                stream.write(content.encode() if isinstance(content, str) else content)
-        for temporary, target in aside:
-            temporary.replace(target)
+                raise InputError(Defect("cannot be written: it is a folder", name))
+            temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+            try:
+                with temporary.open("xb") as stream:
+                    aside.append((name, temporary, target))
+                    stream.write(content.encode() if isinstance(content, str) else content)
+            except OSError as error:
+                raise _defect(error, name) from None
+        for name, temporary, target in aside:
+            try:
+                temporary.replace(target)
+            except OSError as error:
+                raise _defect(error, name) from None
     finally:
-        for temporary, _ in aside:
+        for _, temporary, _ in aside:
             temporary.unlink(missing_ok=True)
 
 
-def _defect(error: OSError, place: Path) -> InputError:
-    return InputError(Defect(f"cannot be written: {error.strerror or error}", str(error.filename or place)))
+def _defect(error: OSError, name: str | Path) -> InputError:
+    return InputError(Defect(f"cannot be written: {error.strerror or error}", str(name)))

@@ -2,7 +2,7 @@
 
 The JSON schema (:mod:`restitution.table_schema`) is the only statement of the rules. Three points are stricter
 here than in the standard: numbers must be finite, column order is free, and a column that is not required may
-be absent. pandas is imported only once a table has been found valid.
+be absent. pandas is imported only once the text of a table has been checked.
 """
 
 from __future__ import annotations
@@ -48,18 +48,36 @@ def read_table(
 
     Arguments as in :func:`check_table`. Empty cells and absent columns are NaN (missing, for text).
     """
-    defects, values = _check(path, schema, columns, scale)
+    defects, values, lines = _check(path, schema, columns, scale)
     if defects:
         raise InputError(*defects)
+    return _frame(schema, values, lines).reset_index(drop=True)
+
+
+def examine_table(
+    path: str | Path,
+    schema: Schema,
+    columns: Mapping[str, str] | None = None,
+    scale: Mapping[str, float] | None = None,
+) -> tuple[list[Defect], pd.DataFrame]:
+    """Every defect and what can be read in spite of them: wrong cells are empty, the index is ``row``.
+
+    For readers with rules of their own, so that their defects can be named together with those found here.
+    Arguments as in :func:`check_table`.
+    """
+    defects, values, lines = _check(path, schema, columns, scale)
+    return defects, _frame(schema, values, lines).rename_axis("row")
+
+
+def _frame(schema: Schema, values: Mapping[str, list], lines: list[int]) -> pd.DataFrame:
     import pandas as pd
 
-    rows = len(next(iter(values.values()), []))
     kinds = {"number": "float64", "integer": "Int64", "string": "str"}
     series = {}
     for f in schema.fields:
-        cells = values.get(f.name, [None] * rows)
+        cells = values.get(f.name, [None] * len(lines))
         kind = "int64" if f.type == "integer" and None not in cells else kinds[f.type]
-        series[f.name] = pd.Series(cells, dtype=kind)
+        series[f.name] = pd.Series(cells, lines, dtype=kind)
     return pd.DataFrame(series)
 
 
@@ -76,11 +94,11 @@ def _check(
     schema: Schema,
     columns: Mapping[str, str] | None,
     scale: Mapping[str, float] | None,
-) -> tuple[list[Defect], dict[str, list]]:
-    """All defects, in the order of the file, and the values by column (``None`` for an empty cell)."""
+) -> tuple[list[Defect], dict[str, list], list[int]]:
+    """All defects, in the order of the file, the values by column (``None`` for an empty cell), and their rows."""
     text = CsvText(path)
     if not text.header:
-        return text.defects, {}
+        return text.defects, {}, []
     file, header, columns, scale = str(path), text.header, columns or {}, scale or {}
     wanted = {name: columns.get(name, name) for name in schema.columns}
     found = [*text.defects, *_header_defects(file, schema, header, columns, scale)]
@@ -117,7 +135,7 @@ def _check(
 
     order = {own: i for i, own in enumerate(header)}
     found.sort(key=lambda d: (d.row or 0, order.get(d.field, -1)))
-    return found, values
+    return found, values, lines
 
 
 def _header_defects(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from restitution.calibration.fitting import Plan
 from restitution.calibration.observations import Observations
+from restitution.calibration.plan import Plan
 from restitution.calibration.rebound_model import model_of
 from restitution.stokes import Speed
 

@@ -9,11 +9,13 @@ from fits import E_DRY, K, draw, observations, plan
 from scipy import integrate, stats
 
 from restitution import laws
+from restitution.calibration.fit_result import result_of
 from restitution.calibration.fitting import estimate
 from restitution.calibration.likelihood import STUDENT
 from restitution.calibration.maximum import Thresholds, maximise
 from restitution.calibration.parameters import Normal, Parameter
 from restitution.calibration.posterior import sample
+from restitution.calibration.prediction import predict
 from restitution.calibration.ranking import predictive
 from restitution.calibration.small_sample import threshold
 from restitution.errors import InputError
@@ -168,6 +170,24 @@ def test_student_intervals_of_a_straight_line():
         half = t.ppf(0.5 * (1 + level)) * book.stderr
         expected = [book.slope - half, book.slope + half]
         np.testing.assert_allclose(fit.maximum.intervals[level][1], expected, atol=5e-4)
+
+
+def test_prediction_intervals_of_a_straight_line():
+    """Errors wholly unknown: for the line and for one more point the textbook's intervals of a regression."""
+    rng = np.random.default_rng(11)
+    x = np.linspace(1, 10, 9)
+    y = 2 + 0.5 * x + 0.3 * rng.standard_normal(9)
+    at = np.array([2.0, 5.5, 9.0])
+    found = predict(result_of(estimate(plan(**{**LINE, "scatter": True}), observations(x, y))), at)
+    book = stats.linregress(x, y)
+    s = np.sqrt(np.sum((y - book.intercept - book.slope * x) ** 2) / 7)
+    leverage = 1 / 9 + (at - x.mean()) ** 2 / np.sum((x - x.mean()) ** 2)
+    for level, name in ((0.68, "68%"), (0.95, "95%")):
+        t = stats.t(7).ppf(0.5 * (1 + level))
+        np.testing.assert_allclose(np.ptp(found.law[name], axis=1) / 2, t * s * np.sqrt(leverage), rtol=0.01)
+        np.testing.assert_allclose(
+            np.ptp(found.impact[name], axis=1) / 2, t * s * np.sqrt(1 + leverage), rtol=0.01
+        )
 
 
 def test_predictive_density_of_what_was_left_out():

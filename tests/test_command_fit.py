@@ -1,6 +1,8 @@
 """``restitution fit``, ``compare``, ``predict`` and ``design`` as a user meets them."""
 
+import itertools
 import json
+import re
 import subprocess
 import sys
 import warnings
@@ -10,6 +12,7 @@ import pandas as pd
 import pytest
 from fits import K
 
+from restitution.calibration.design import candidates
 from restitution.calibration.fit_result import read_fit
 from restitution.cli import main
 
@@ -123,10 +126,36 @@ def test_design_prefers_where_the_law_is_sensitive(case):
     status, out, _ = case("design", "fit.json", "--rows", "1", "--plot", "gain.svg")
     assert status == 0
     # dK narrows most where |df/dK| = 1.97 f/St is greatest: St = 1.97 K, by hand
-    St = float(out.splitlines()[2].split()[-5])
+    St = float(out.splitlines()[3].split()[-5])
     assert St == pytest.approx(1.97 * K, rel=0.1)
     assert (case.folder / "gain.svg").stat().st_size > 1000
-    assert case("design", "fit.json", "--parameter", "beta")[0] == 2
+    for options in (["--parameter", "beta"], ["--at", "0"], ["--at", "1e-3"], ["--e-dry", "3"], ["--rows", "0"]):
+        assert case("design", "fit.json", *options)[0] == 2, options
+
+
+def test_design_lists_each_pair_once_and_each_condition_once(case):
+    name = write(case, rows(sigma=0.005))
+    case("fit", name, "--out", "fit.json")
+    _, out, _ = case("design", "fit.json", "--rows", "999")
+    pairs = [re.match(r".* mm ", line)[0].split() for line in out.splitlines()[3:]]
+    assert len(pairs) == len({tuple(pair) for pair in pairs}) > 20
+    for one, other in itertools.pairwise(candidates()):
+        if (one.fluid, one.sphere) == (other.fluid, other.sphere):
+            assert other.speed > 1.02 * one.speed
+
+
+@pytest.mark.parametrize("place", ["nowhere/fit.json", "my.csv", "."])
+def test_what_cannot_be_written_is_named_as_the_user_named_it(case, place):
+    name = write(case, rows())
+    before = (case.folder / name).read_bytes()
+    laws = ["--law", "eq4_exponential", "--out", place]
+    for command in ("fit", "compare"):
+        status, out, error = case(command, name, *laws)
+        assert (status, out) == (2, "")
+        assert error.startswith(f"error: {place}: ")
+        assert ".part" not in error
+    assert (case.folder / name).read_bytes() == before
+    assert [p.name for p in case.folder.iterdir()] == [name]
 
 
 def test_compare_finds_the_law_and_says_when_it_cannot(case):
@@ -147,7 +176,7 @@ def test_compare_finds_the_law_and_says_when_it_cannot(case):
     assert table.loc["eq4_linear", "separated"] == "yes"
     # The same curve under another name: nothing can separate them.
     assert "do not separate: " in out
-    assert abs(table.loc["eq4_exponential", "AIC"] - table.loc["e_dry*exp(-b/St)", "AIC"]) < 0.1
+    assert abs(table.loc["eq4_exponential", "aic"] - table.loc["e_dry*exp(-b/St)", "aic"]) < 0.1
 
 
 def test_own_formula_and_posterior(case):
@@ -261,6 +290,38 @@ def test_bad_input_is_one_clear_line_and_nothing_is_written(case, kind):
     assert words in error
     assert all(line.startswith("error: ") for line in error.splitlines())
     assert {p.name for p in case.folder.iterdir()} == {"my.csv"}
+
+
+def test_all_defects_of_all_files_are_named_at_once(case):
+    """By row: what the form of the table, and what the rules between its columns, have against it."""
+    header = HEADER.strip() + ",outcome\n"
+    wrong = [
+        "30,st,far,0.97,1.3,0.01,",  # e_eff above 1
+        "abc,st,far,0.97,0.3,0.01,",  # no number
+        "30,st,contact,0.97,0.3,-1,",  # another speed, a negative error
+        "30,st_star,far,0.97,,0.01,",  # another convention, no e_eff
+        ",st,far,1.7,0.3,0.01,",  # no St, e_dry above 1
+        "30,st,far,0.97,0.3,0.01,no_rebound",  # e_eff without a rebound
+        "30,,far,0.97,0.3,0.01,bounced",  # no convention, no such outcome
+        "30,st,far",
+    ]
+    write(case, ["152,st,far,0.97,0.8,0.01,", *wrong], "one.csv", header)
+    write(case, ["152,st,far,0.97,-0.8,0.01"], "two.csv")
+    status, _, error = case("fit", "one.csv", "two.csv", "three.csv")
+    named = [re.match(r"error: (\w+).csv(?::(\d+))?(?:: (\w+))?", line).groups() for line in error.splitlines()]
+    assert status == 2
+    assert [(row, field) for file, row, field in named if file == "one"] == [
+        ("3", "e_eff"), ("4", "stokes"), ("5", "e_eff_sigma"), ("5", "speed_definition"),
+        ("6", "stokes_convention"), ("6", "e_eff"), ("7", "e_dry"), ("7", "stokes"), ("8", "e_eff"),
+        ("9", "outcome"), ("9", "stokes_convention"), ("10", "has"),
+    ]  # fmt: skip
+    assert [file for file, _, _ in named][-2:] == ["two", "three"]
+
+
+def test_a_file_counts_once(case):
+    name = write(case, rows())
+    status, _, error = case("fit", name, name)
+    assert (status, "twice" in error) == (2, True)
 
 
 def test_unphysical_restitution_with_the_flag(case):

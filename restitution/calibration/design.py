@@ -13,6 +13,7 @@ wrong, nor that more data also tell the scatter.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,38 +33,51 @@ PAIRS = Path(__file__).with_name("pairs.csv")
 _SCHEMA = Path(__file__).with_name("pairs.json")
 
 
+SAME_SPEED = 0.02
+"""A higher fall that is faster by less than this fraction is the same experiment, at the terminal speed."""
+
+
 @dataclass(frozen=True)
 class Candidate:
-    """One feasible experiment."""
+    """One feasible experiment; ``height`` in m is that of the release, None where the speed is stated."""
 
     fluid: str
     sphere: str
     conditions: Conditions
     speed: float
+    height: float | None = None
 
 
 @dataclass(frozen=True)
 class Gain:
     """What a candidate would do: standard errors of the target with so many shots, over the one now."""
 
-    candidate: Candidate | None
+    candidate: Candidate
     stokes: float
     e_eff: float
     ratio: tuple[float, ...]
 
 
 def candidates(path: str | Path = PAIRS, heights: tuple[float, ...] = (0.01, 0.05, 0.2)) -> list[Candidate]:
-    """The pairs of a table, each at its stated impact speed or after falls from rest over ``heights`` in m."""
-    found = []
+    """The pairs of a table, each at its stated impact speed or after falls from rest over ``heights`` in m.
+
+    Of falls that end at the same speed only the lowest is taken.
+    """
+    found: list[Candidate] = []
     for row in read_table(path, read_schema(_SCHEMA)).itertuples():
         fluid = Fluid(density=row.fluid_density_kg_m3, viscosity=row.fluid_viscosity_Pa_s)
         e_dry = None if np.isnan(row.e_dry) else row.e_dry
         sphere = Sphere(diameter=row.sphere_diameter_m, density=row.sphere_density_kg_m3, e_dry=e_dry)
         conditions = Conditions(fluid=fluid, sphere=sphere)
-        stated = row.impact_speed_m_s
-        speeds = [fall_speed(conditions, h) for h in heights] if np.isnan(stated) else [stated]
         name = f"{row.sphere} {row.sphere_diameter_m * 1e3:g} mm"
-        found += [Candidate(row.fluid, name, conditions, v) for v in dict.fromkeys(speeds) if v > 0]
+        if not np.isnan(row.impact_speed_m_s):
+            found.append(Candidate(row.fluid, name, conditions, row.impact_speed_m_s))
+            continue
+        fastest = 0.0
+        for height in sorted(heights):
+            if (v := fall_speed(conditions, height)) > (1 + SAME_SPEED) * fastest:
+                found.append(Candidate(row.fluid, name, conditions, v, height))
+                fastest = v
     return found
 
 
@@ -73,6 +87,13 @@ class Target:
 
     parameter: str | None = None
     stokes: float | None = None
+
+
+def levels_of(result: FitResult, target: Target, levels: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The levels of separate parameters that a target is about: those given, else that of the parameter itself."""
+    name, _, level = (target.parameter or "").partition("[")
+    own = {result.separate[name]: level.removesuffix("]")} if level and name in result.separate else {}
+    return own | dict(levels or {})
 
 
 class Design:
@@ -87,10 +108,14 @@ class Design:
         e_sigma: float | None = None,
         stokes_sigma: float | None = None,
         same_source: bool = False,
+        levels: Mapping[str, str] | None = None,
     ):
-        """``e_sigma`` and ``stokes_sigma`` (relative) of a new impact; by default those typical of the fit."""
-        self.result, self.e_dry = result, e_dry
-        self.law = Evaluation(result, e_dry, conditions)
+        """``e_sigma`` and ``stokes_sigma`` (relative) of a new impact; by default those typical of the fit.
+
+        ``levels`` of separate parameters, as ``{"material": "steel"}``.
+        """
+        self.result, self.e_dry, self.levels = result, e_dry, levels_of(result, target, levels)
+        self.law = Evaluation(result, e_dry, conditions, self.levels)
         if not self.law.names:
             raise InputError("the fit has no free parameter of the law: there is nothing to narrow")
         self.target = self._direction(target)
@@ -100,6 +125,11 @@ class Design:
         self.stokes_sigma = relative if stokes_sigma is None else stokes_sigma
         self.offset = 0.0 if same_source else result.deviation(OFFSET)
         self.now = float(np.sqrt(self.target @ self.law.covariance @ self.target))
+        if not self.now > 0:
+            what = target.parameter or f"e_eff at St {target.stokes:g}"
+            raise InputError(
+                f"the fit leaves no error of {what} to narrow: choose another parameter or Stokes number"
+            )
 
     def _direction(self, target: Target) -> NDArray:
         if target.stokes is not None:
@@ -121,6 +151,14 @@ class Design:
         left = self.target @ C @ self.target - (Cg @ self.target) ** 2 / (s2 + np.einsum("ij,ij->i", Cg, g))
         return np.sqrt(np.maximum(left, 0.0)) / self.now
 
+    def best(self, shots: int) -> tuple[float, float, float]:
+        """The calibrated St where ``shots`` impacts narrow most, and the ends of where they do 9/10 of that."""
+        low, high = self.result.stokes_range
+        St = np.geomspace(low, high, 400)
+        gain = 1 - self.ratio(St, shots)
+        enough = St[gain >= 0.9 * gain.max()]
+        return float(St[np.argmax(gain)]), float(enough[0]), float(enough[-1])
+
     def rank(self, options: list[Candidate], shots: tuple[int, ...], all_stokes: bool = False) -> list[Gain]:
         """Candidates within the calibrated range of St by the gain of the greatest number of shots, best first.
 
@@ -132,7 +170,15 @@ class Design:
             St = stokes_of(self.result, np.array([option.speed]), option.conditions)
             if not all_stokes and not low <= St[0] <= high:
                 continue
-            law = Evaluation(self.result, self.e_dry, option.conditions)
+            law = Evaluation(self.result, self.e_dry, option.conditions, self.levels)
             ratios = tuple(float(self.ratio(St, m, law)[0]) for m in shots)
             gains.append(Gain(option, float(St[0]), float(law(St, law.values)[0]), ratios))
         return sorted(gains, key=lambda gain: gain.ratio[-1])
+
+
+def best_of_pairs(gains: list[Gain]) -> list[Gain]:
+    """Of a ranking the best speed of each fluid and sphere."""
+    first: dict[tuple[str, str], Gain] = {}
+    for gain in gains:
+        first.setdefault((gain.candidate.fluid, gain.candidate.sphere), gain)
+    return list(first.values())

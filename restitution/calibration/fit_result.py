@@ -1,9 +1,8 @@
-"""What is kept of a fit: a record that is JSON and nothing else, and its plain text."""
+"""What is kept of a fit: a record that is JSON and nothing else."""
 
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
@@ -13,10 +12,11 @@ import numpy as np
 from pydantic import Field
 
 from restitution.calibration.fitting import Fit
-from restitution.calibration.likelihood import OFFSET, SCATTER
+from restitution.calibration.likelihood import OFFSET
 from restitution.calibration.maximum import LEVELS
 from restitution.calibration.posterior import Posterior
 from restitution.calibration.rebound_model import LawModel, ReboundModel, model_of
+from restitution.calibration.residuals import Goodness, Point, goodness_of, number_or_none, points_of
 from restitution.conditions import Record
 from restitution.table_schema import read_record
 
@@ -49,39 +49,6 @@ class Estimated(Record):
     open_ends: dict[str, tuple[bool, bool]]
     degrees_of_freedom: float | None
     """Of Student's t; None: many."""
-
-
-class Point(Record):
-    """One impact with what the fit makes of it. ``pull`` is the residual over its whole standard deviation."""
-
-    file: str | None
-    row: int | None
-    source: str
-    levels: dict[str, str]
-    """Of the labels that parameters are separate by."""
-    stokes: float
-    stokes_sigma: float
-    e_dry: float | None
-    e_eff: float | None
-    e_eff_sigma: float
-    e_eff_upper: float | None
-    predicted: float
-    residual: float | None
-    sigma: float
-    pull: float | None
-
-
-class Goodness(Record):
-    """How well the law describes the impacts. ``chi_square`` takes the quoted errors alone, without scatter."""
-
-    measured: int
-    censored: int
-    chi_square: float | None
-    degrees_of_freedom: int
-    p_value: float | None
-    largest_pull: float
-    log_likelihood: float
-    log_likelihood_of: Literal["maximum", "restricted maximum"]
 
 
 class Chain(Record):
@@ -181,14 +148,14 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         Estimated(
             name=p.name,
             value=float(found.values[j]),
-            sigma=_number(sigma[j]),
+            sigma=number_or_none(sigma[j]),
             unit=p.unit,
             bounds=p.bounds,
             prior=str(p.prior),
             mean=p.mean,
             intervals={f"{level:.0%}": tuple(map(float, found.intervals[level][j])) for level in LEVELS},
             open_ends={f"{level:.0%}": tuple(map(bool, found.open_ends[level][j])) for level in LEVELS},
-            degrees_of_freedom=_number(fit.freedom[j]),
+            degrees_of_freedom=number_or_none(fit.freedom[j]),
         )
         for j, p in enumerate(found.parameters)
     )
@@ -209,117 +176,19 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         fixed=fixed,
         separate=dict(likelihood.separate),
         parameters=estimated,
-        covariance=tuple(tuple(_number(x) for x in row) for row in found.covariance),
+        covariance=tuple(tuple(number_or_none(x) for x in row) for row in found.covariance),
         offsets=likelihood.offsets(found.values) if OFFSET in [p.name for p in found.parameters] else {},
-        goodness=_goodness(fit),
+        goodness=goodness_of(fit),
         stokes_range=(float(o.St[told].min()), float(o.St[told].max())),
         law_stokes_ratio=(float(ratio.min()), float(ratio.max())),
         e_dry_range=(float(e_dry.min()), float(e_dry.max())) if len(e_dry) else (0.0, 1.0),
         robust=likelihood.robust,
-        points=_points(fit),
+        points=points_of(fit),
         posterior=posterior,
         files=dict(o.files),
         versions={name: metadata.version(name) for name in _LIBRARIES},
         notes=fit.notes,
     )
-
-
-def _points(fit: Fit) -> tuple[Point, ...]:
-    likelihood, o = fit.likelihood, fit.likelihood.observations
-    f, variance, omega = likelihood.moments(fit.maximum.values)
-    offsets = likelihood.offsets(fit.maximum.values) if omega > 0 else {}
-    points = []
-    for i in range(len(o)):
-        file, row = o.places[i] if o.places else (None, None)
-        source = str(o.labels["source"][i])
-        predicted = float(f[i]) + offsets.get(source, (0.0, 0.0))[0]
-        seen = not o.censored[i]
-        residual = float(o.e[i]) - predicted if seen else None
-        points.append(
-            Point(
-                file=file,
-                row=row,
-                source=source,
-                levels={label: str(o.labels[label][i]) for label in dict.fromkeys(likelihood.separate.values())},
-                stokes=float(o.St[i]),
-                stokes_sigma=float(o.St_sigma[i]),
-                e_dry=_number(o.e_dry[i]),
-                e_eff=float(o.e[i]) if seen else None,
-                e_eff_sigma=float(o.e_sigma[i]),
-                e_eff_upper=None if seen else float(o.upper[i]),
-                predicted=predicted,
-                residual=residual,
-                sigma=math.sqrt(variance[i]),
-                pull=residual / math.sqrt(variance[i]) if seen else None,
-            )
-        )
-    return tuple(points)
-
-
-def _goodness(fit: Fit) -> Goodness:
-    from scipy.stats import chi2
-
-    likelihood, o = fit.likelihood, fit.likelihood.observations
-    values = fit.maximum.values
-    names = [p.name for p in fit.maximum.parameters]
-    tau = values[names.index(SCATTER)] if SCATTER in names else 0.0
-    f, variance, omega = likelihood.moments(values)
-    offsets = likelihood.offsets(values) if omega > 0 else {}
-    shift = np.array([offsets.get(s, (0.0, 0.0))[0] for s in o.labels["source"]])
-    seen = ~o.censored
-    r, quoted = (o.e - f - shift)[seen], (variance - tau**2)[seen]
-    free = int(seen.sum()) - sum(p.mean for p in fit.maximum.parameters)
-    known = bool((o.e_sigma[seen] > 0).all() and (quoted > 0).all())
-    chi_square = float(np.sum(r**2 / quoted)) if known else None
-    return Goodness(
-        measured=int(seen.sum()),
-        censored=int((~seen).sum()),
-        chi_square=chi_square,
-        degrees_of_freedom=free,
-        p_value=float(chi2.sf(chi_square, free)) if known and free > 0 else None,
-        largest_pull=float(np.max(np.abs(r / np.sqrt(variance[seen])))),
-        log_likelihood=-float(fit.maximum.negative_log),
-        log_likelihood_of="restricted maximum" if fit.restricted else "maximum",
-    )
-
-
-def _number(x: float) -> float | None:
-    return float(x) if math.isfinite(x) else None
-
-
-def describe(result: FitResult) -> list[tuple[str, str]]:
-    """The fit in words, as names and what is to be said of each."""
-    g = result.goodness
-    facts = [
-        ("law", f"{result.law.name or 'own formula'}: {result.law.text}"),
-        ("Stokes number", f"{result.stokes_convention} in the data, {result.law.convention} in the law"),
-        ("impact speed", result.speed_definition),
-        ("impacts", f"{g.measured} measured, {g.censored} without a rebound; sources: {len(sources(result))}"),
-    ]
-    facts += [(name, f"{value:g} (fixed)") for name, value in result.fixed.items()]
-    for p in result.parameters:
-        unit = "" if p.unit == "1" else f" {p.unit}"
-        words = ", ".join(f"{level} {_interval(p, level)}" for level in p.intervals)
-        prior = f"; prior {p.prior}" if p.prior.startswith("normal") else ""
-        value = 0.0 if not p.mean and p.value < 1e-3 * p.intervals["95%"][1] else p.value  # zero but for rounding
-        error = f" +- {_sigma(p)}" if p.mean else ""  # of a standard deviation near zero it would mislead
-        facts.append((p.name, f"{value:.5g}{unit}{error} ({words}{prior})"))
-    for name, (mean, sigma) in result.offsets.items():
-        facts.append(("offset", f"{name}: {mean:+.3f} +- {sigma:.3f}"))
-    if g.chi_square is not None:
-        p_value = "" if g.p_value is None else f", p = {g.p_value:.2g}"
-        facts.append(
-            ("chi square", f"{g.chi_square:.1f} of {g.degrees_of_freedom} by the quoted errors alone{p_value}")
-        )
-    facts.append(("largest pull", f"{g.largest_pull:.1f} standard deviations, scatter included"))
-    if chain := result.posterior:
-        words = f"{chain.walkers} walkers, {chain.steps} steps, seed {chain.seed}, converged"
-        facts.append(("posterior", f"{words} (autocorrelation time {max(chain.autocorrelation_time):.0f})"))
-        for j, name in enumerate(chain.names):
-            ends = ", ".join(f"{level} {x[j][0]:.5g} to {x[j][1]:.5g}" for level, x in chain.intervals.items())
-            facts.append((f"  {name}", f"median {chain.median[j]:.5g} ({ends}; prior {chain.priors[name]})"))
-    facts += [("note", note) for note in result.notes]
-    return facts
 
 
 def sources(result: FitResult) -> list[str]:
@@ -335,13 +204,3 @@ def parameter_values(result: FitResult, levels: Mapping[str, str] | None = None)
         if not level or (levels or {}).get(result.separate[name]) == level.removesuffix("]"):
             values[name] = p.value
     return values
-
-
-def _sigma(p: Estimated) -> str:
-    return "not known" if p.sigma is None else f"{p.sigma:.2g}"
-
-
-def _interval(p: Estimated, level: str) -> str:
-    low, high = p.intervals[level]
-    marks = [" (bound)" if open_end else "" for open_end in p.open_ends[level]]
-    return f"{low:.5g}{marks[0]} to {high:.5g}{marks[1]}"

@@ -29,7 +29,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaln, log_ndtr, logsumexp, stdtr
+from scipy.special import gammaln, log_ndtr, stdtr
 
 from restitution.calibration.observations import Observations
 from restitution.calibration.parameters import Parameter
@@ -90,7 +90,7 @@ class Likelihood:
             here = limited == s
             offset = shrink[s] * S[s] + np.sqrt(shrink[s]) * _NODES[:, None]
             below = log_ndtr((z[here] - offset) / np.sqrt(v_z[here])).sum(axis=1)
-            result -= float(logsumexp(below - 0.5 * _NODES**2) - _LOG_WEIGHT)
+            result -= _log_sum_exp(below - 0.5 * _NODES**2) - _LOG_WEIGHT
         return result
 
     def moments(self, values: NDArray) -> tuple[NDArray, NDArray, float]:
@@ -195,7 +195,13 @@ class Likelihood:
         b = centre + spread * _NODES[:, None]
         log_p = self._log_density(r - b, v).sum(axis=1) + self._log_below(z - b, v_censored).sum(axis=1)
         log_p += -0.5 * (b[:, 0] / omega) ** 2 - np.log(omega * np.sqrt(2 * np.pi))
-        return float(logsumexp(log_p) + np.log(spread * (_NODES[1] - _NODES[0])))
+        return _log_sum_exp(log_p) + float(np.log(spread * (_NODES[1] - _NODES[0])))
 
 
-_LOG_WEIGHT = float(logsumexp(-0.5 * _NODES**2))
+def _log_sum_exp(x: NDArray) -> float:
+    """ln sum exp x; scipy's takes any array library and ten times as long for these few nodes."""
+    most = x.max()
+    return float(most + np.log(np.exp(x - most).sum())) if np.isfinite(most) else float(most)
+
+
+_LOG_WEIGHT = _log_sum_exp(-0.5 * _NODES**2)

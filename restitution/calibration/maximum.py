@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.parameters import Parameter, log_prior
+from restitution.calibration.parameters import Normal, Parameter, log_prior
 from restitution.errors import Defect, InputError
 
 LEVELS = (0.68, 0.95)
@@ -52,9 +52,9 @@ class Maximum:
 
 @dataclass(frozen=True)
 class Thresholds:
-    """By how much -2 ln L rises to the ends of an interval: by level, one number a parameter."""
+    """By how much -2 ln L rises to the ends of an interval: by level, one number a parameter; None: do without."""
 
-    rise: Mapping[float, Sequence[float]]
+    rise: Mapping[float, Sequence[float | None]]
 
 
 def maximise(
@@ -75,12 +75,13 @@ def maximise(
     parameters = tuple(parameters)
     start = np.array([p.start for p in parameters]) if start is None else np.asarray(start, float)
     outward = [p.outward for p in parameters]
+    measured = any(isinstance(p.prior, Normal) for p in parameters)
 
     def function(x: NDArray) -> float:
         if not np.isfinite(x).all():
             return HUGE
         values = np.array([out(v) for out, v in zip(outward, x, strict=True)])
-        total = negative_log(values) - log_prior(parameters, values, every=False)
+        total = negative_log(values) - (log_prior(parameters, values, every=False) if measured else 0.0)
         return total if total < HUGE else HUGE
 
     first = np.array([p.inward(v) for p, v in zip(parameters, start, strict=True)])
@@ -129,10 +130,12 @@ def _step(p: Parameter, x: float) -> float:
     return min(0.1 * abs(x) if x else reach, reach) or 0.1
 
 
-def _interval(minuit, p: Parameter, rise: float) -> tuple[tuple[float, float], tuple[bool, bool]]:
+def _interval(minuit, p: Parameter, rise: float | None) -> tuple[tuple[float, float], tuple[bool, bool]]:
     """Where the profile of -2 ln L has risen by ``rise`` on both sides of the maximum, or the bounds."""
     from scipy.stats import chi2
 
+    if rise is None:
+        return (np.nan, np.nan), (False, False)
     # MINUIT takes a confidence level; this is the one whose chi^2 quantile is the rise.
     minuit.minos(p.name, cl=float(chi2.cdf(rise, 1)))
     found = minuit.merrors[p.name]
@@ -168,7 +171,15 @@ def _search(minuit, p: Parameter, rise: float, side: int) -> float | None:
     profile.limits = minuit.limits
     profile.fixed[p.name] = True
 
+    known = {best: -rise}
+
     def excess(x: float) -> float:
+        # A profile is a search of its own and repeats itself to rounding only: a bracket must keep its signs.
+        if x not in known:
+            known[x] = at(x)
+        return known[x]
+
+    def at(x: float) -> float:
         for name in minuit.parameters:
             profile.values[name] = minuit.values[name]
             profile.errors[name] = minuit.errors[name]

@@ -1,8 +1,9 @@
 """e_eff at given conditions, with its interval: that of the law, and that of one more impact.
 
 Linear propagation of the covariance of the parameters, J C J^T, with Student's t of the least degrees of freedom
-of them; where the fit has a posterior, its draws take the place of both. One more impact, by another particle in
-another set-up, has scatter and source offset on top.
+of them. One more impact, by another particle in another set-up, has scatter and source offset on top, each with
+its own t: a standard deviation tau known to sigma_tau has tau^2/(2 sigma_tau^2) degrees of freedom; half-widths
+add in squares, which is exact for normal errors. Where the fit has a posterior, its draws take the place of all.
 """
 
 from __future__ import annotations
@@ -51,12 +52,13 @@ def predict(
     value = law(St, law.values)
     J = law.jacobian(St)
     sigma = np.sqrt(np.einsum("ij,jk,ik->i", J, law.covariance, J))
-    noise = np.hypot(result.deviation(SCATTER), result.deviation(OFFSET))
     if result.posterior is not None:
         intervals, more = _from_draws(law, St, result, seed)
     else:
-        intervals = {f"{x:.0%}": _normal(value, sigma, law.quantile(x)) for x in LEVELS}
-        more = {f"{x:.0%}": _normal(value, np.hypot(sigma, noise), law.quantile(x)) for x in LEVELS}
+        half = {x: sigma * quantile(x, law.freedom) for x in LEVELS}
+        noise = {x: np.hypot(*(_half_width(result, name, x) for name in (SCATTER, OFFSET))) for x in LEVELS}
+        intervals = {f"{x:.0%}": _around(value, half[x]) for x in LEVELS}
+        more = {f"{x:.0%}": _around(value, np.hypot(half[x], noise[x])) for x in LEVELS}
     return Prediction(St, value, sigma, intervals, more, _warnings(result, St, law.e_dry))
 
 
@@ -89,7 +91,11 @@ class Evaluation:
         if e_dry is None and "e_dry" not in chosen and conditions is not None:
             e_dry = conditions.sphere.e_dry
         if "e_dry" not in chosen and e_dry is None:
-            raise InputError(Defect("is needed: it was not estimated (--sphere ...,e_dry=0.97)", field="e_dry"))
+            raise InputError(
+                Defect("is needed: it was not estimated (--e-dry 0.97, or --sphere ...,e_dry=0.97)", field="e_dry")
+            )
+        if e_dry is not None and not 0 < e_dry <= 1:
+            raise InputError(Defect("must lie above 0 and be at most 1", field="e_dry", value=f"{e_dry:g}"))
         self.e_dry = chosen.get("e_dry", e_dry)
         self.fixed = {"e_dry": self.e_dry} | chosen
         plain = {p.name: p.name.partition("[")[0] for p in result.parameters if p.mean}
@@ -128,12 +134,22 @@ class Evaluation:
             J[:, j] = (self(St, above) - self(St, below)) / (above[j] - below[j])
         return J
 
-    def quantile(self, level: float) -> float:
-        """Of Student's t, or of the normal."""
-        from scipy.stats import norm, t
 
-        half = 0.5 * (1 + level)
-        return float(norm.ppf(half) if np.isinf(self.freedom) else t.ppf(half, self.freedom))
+def quantile(level: float, freedom: float) -> float:
+    """Half the width of a central interval of Student's t, or of the normal, in standard errors."""
+    from scipy.stats import norm, t
+
+    half = 0.5 * (1 + level)
+    return float(norm.ppf(half) if np.isinf(freedom) else t.ppf(half, freedom))
+
+
+def _half_width(result: FitResult, name: str, level: float) -> float:
+    """Of the scatter or the source offset of one more impact; 0 where it was not estimated, or is 0."""
+    found = next((p for p in result.parameters if p.name == name), None)
+    if found is None or not found.value > 0:
+        return 0.0
+    freedom = 1.0 if found.sigma is None else max(0.5 * (found.value / found.sigma) ** 2, 1.0)
+    return found.value * quantile(level, freedom)
 
 
 def _ratio(result: FitResult, convention: str, conditions: Conditions | None) -> float:
@@ -144,8 +160,8 @@ def _ratio(result: FitResult, convention: str, conditions: Conditions | None) ->
     return StokesNumber(1.0, result.stokes_convention).to(convention, conditions).value
 
 
-def _normal(value: NDArray, sigma: NDArray, quantile: float) -> NDArray:
-    return np.stack([value - quantile * sigma, value + quantile * sigma], axis=1)
+def _around(value: NDArray, half: NDArray) -> NDArray:
+    return np.stack([value - half, value + half], axis=1)
 
 
 def _from_draws(
@@ -160,7 +176,7 @@ def _from_draws(
     for name in (SCATTER, OFFSET):
         if name in chain.names:
             noise = np.hypot(noise, draws[:, chain.names.index(name)])
-    more = f + noise[:, None] * rng.standard_normal(f.shape)
+    more = f + (noise * rng.standard_normal(len(draws)))[:, None]  # one impact a draw, moved along St
 
     def central(x: NDArray, level: float) -> NDArray:
         return np.quantile(x, [0.5 * (1 - level), 0.5 * (1 + level)], axis=0).T

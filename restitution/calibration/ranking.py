@@ -21,10 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
-from restitution.calibration.fitting import Fit, Plan, estimate
+from restitution.calibration.fitting import Fit, estimate
 from restitution.calibration.likelihood import OFFSET, Likelihood
 from restitution.calibration.observations import Observations
-from restitution.errors import InputError
+from restitution.calibration.plan import Plan
+from restitution.errors import ConventionError, InputError
 
 LEAST_DIFFERENCE, STANDARD_ERRORS = 4.0, 2.0
 REPLICATES = 1000
@@ -93,6 +94,11 @@ def rank(
             progress(label)
         try:
             scores.append(score(label, plan, observations, seed))
+        except ConventionError:
+            failed[label] = (
+                f"its Stokes number is {plan.model.convention}, that of the data {observations.convention}: fluid "
+                "and sphere are needed (their columns, or --conditions FILE)"
+            )
         except InputError as error:
             failed[label] = str(error.defects[0])
     if not scores:

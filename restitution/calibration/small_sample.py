@@ -20,6 +20,7 @@ ln(1 + t^2/nu) nu/2 below its maximum, which gives the t interval exactly where 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,11 +80,15 @@ class Restriction:
         w = 1 / np.maximum(self.variance + tau**2, 1e-24)
         information = self.J.T @ (w[:, None] * self.J) + self.precision
         if omega > 0:
-            n = self.sources.max() + 1
-            sums = np.stack([np.bincount(self.sources, w * column, n) for column in self.J.T])
-            shrink = omega**2 / (1 + omega**2 * np.bincount(self.sources, w, n))
+            sums = (w[:, None] * self.J).T @ self._members
+            shrink = omega**2 / (1 + omega**2 * (w @ self._members))
             information = information - (sums * shrink) @ sums.T
         return information
+
+    @cached_property
+    def _members(self) -> NDArray:
+        """Which impact is of which source, (n, sources) of 0 and 1."""
+        return (self.sources[:, None] == np.arange(self.sources.max() + 1)).astype(float)
 
     def degrees_of_freedom(self, values: NDArray) -> NDArray:
         """Satterthwaite's nu of each parameter of the law, at least 1; infinity for a large set."""

@@ -35,7 +35,7 @@ _ROWS = (
 
 def template() -> dict[str, str]:
     """The files by name: the table, and what each column means."""
-    from restitution.calibration.impact_data import SCHEMA
+    from restitution.calibration.impact_table import SCHEMA
     from restitution.table_schema import read_schema
 
     table = "\n".join(",".join(row) for row in (_COLUMNS, *_ROWS)) + "\n"

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from restitution.commands import fit
+from restitution.commands import fit, options
 from restitution.console import show, show_rows
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def run(args: argparse.Namespace) -> None:
 
     if not args.data:
         raise InputError("name the data: CSV files or shipped records")
+    options.check_output("--out", args.out, args.data)
     observations = read(args.data, fit.reading_of(args))
     plans = []
     wanted = args.law or laws.names("rebound")
@@ -101,14 +102,33 @@ def table(ranking: Ranking) -> list[tuple[str, ...]]:
     return rows
 
 
+COLUMNS = (
+    "law",
+    "parameters",
+    "log_likelihood",
+    "aic",
+    "bic",
+    "elpd_one_out",
+    "difference",
+    "difference_sigma",
+    "elpd_source_out",
+    "check_p",
+    "separated",
+)
+"""Of the file, which has all digits."""
+
+
 def _csv(ranking: Ranking) -> str:
     import csv
     import io
 
-    text = io.StringIO()
+    best, text = ranking.scores[0], io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEADINGS)
-    writer.writerows(table(ranking))
+    writer.writerow(COLUMNS)
+    for s, cells in zip(ranking.scores, table(ranking), strict=True):
+        numbers = (s.log_likelihood, s.aic, s.bic, s.elpd_loo, *ranking.difference(best, s))
+        loso = "" if s.elpd_loso is None else f"{s.elpd_loso:.6g}"
+        writer.writerow((s.label, s.parameters, *(f"{x:.6g}" for x in numbers), loso, f"{s.check:.3g}", cells[-1]))
     return text.getvalue()
 
 
@@ -119,8 +139,10 @@ def _show(ranking: Ranking) -> None:
         show(f"the data do not separate: {', '.join(contenders)}")
     elif len(ranking.scores) > 1:
         show(f"the data support {contenders[0]} over all others")
-    for s in ranking.scores:
-        if s.check < 0.05:
-            show(f"note: {s.label} lacks the shape of the data: neighbours in St deviate alike, p = {s.check:.3f}")
-    for label, reason in ranking.failed.items():
-        show(f"left out: {label}: {reason}")
+    unlike = [s.label for s in ranking.scores if s.check < 0.05]
+    if unlike:
+        show(
+            f"note: neighbours in St deviate alike (check p < 0.05), so the shape is in doubt: {', '.join(unlike)}"
+        )
+    for reason in dict.fromkeys(ranking.failed.values()):
+        show(f"left out: {', '.join(law for law, why in ranking.failed.items() if why == reason)}: {reason}")

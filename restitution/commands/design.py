@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import statistics
 from typing import TYPE_CHECKING
 
+from restitution.commands import options
 from restitution.commands.predict import numbers
 from restitution.console import show, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.design import Gain
+    from restitution.calibration.fit_result import FitResult
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Declare ``design FIT --for NAME``."""
+    """Declare ``design FIT [--parameter NAME | --at ST]``."""
     parser = commands.add_parser(
         "design",
         help="what to measure next: which fluid, sphere and speed would narrow an interval most",
@@ -30,7 +33,20 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--pairs", metavar="FILE", help="feasible fluids and spheres, as CSV (default: a shipped list)"
     )
     parser.add_argument(
-        "--height", type=numbers, default=[0.01, 0.05, 0.2], metavar="H[,H...]", help="release heights in m"
+        "--height",
+        type=numbers,
+        default=[0.01, 0.05, 0.2],
+        metavar="H[,H...]",
+        help="release heights in m (0.01,0.05,0.2)",
+    )
+    parser.add_argument("--all", action="store_true", help="every release height, not only the best of each pair")
+    parser.add_argument(
+        "--level",
+        action="append",
+        default=[],
+        type=options.pair,
+        metavar="COLUMN=NAME",
+        help="of separate parameters (default: that of --parameter)",
     )
     parser.add_argument("--e-sigma", type=float, metavar="S", help="error of a new e_eff (default: as in the fit)")
     parser.add_argument("--st-sigma", type=float, metavar="S", help="relative error of a new St (as in the fit)")
@@ -56,20 +72,27 @@ def run(args: argparse.Namespace) -> None:
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 
-    for option, value in (("--at", args.at), ("--e-sigma", args.e_sigma), ("--st-sigma", args.st_sigma)):
-        if value is not None and not 0 <= value < float("inf"):
-            raise InputError(Defect("must be positive and finite", field=option, value=f"{value:g}"))
+    for option, value, least in (
+        ("--at", args.at, "positive"),
+        ("--e-sigma", args.e_sigma, "zero or positive"),
+        ("--st-sigma", args.st_sigma, "zero or positive"),
+        ("--rows", args.rows, "positive"),
+    ):
+        if value is not None and not (0 < value < float("inf") or (value == 0 and "zero" in least)):
+            raise InputError(Defect(f"must be {least} and finite", field=option, value=f"{value:g}"))
     if args.plot is not None and not args.plot.endswith((".svg", ".png")):
         raise InputError(Defect("must end in .svg or .png", field="--plot", value=args.plot))
+    options.check_output("--plot", args.plot, [args.fit])
     result = read_fit(args.fit)
-    options = design.candidates(args.pairs or design.PAIRS, tuple(args.height))
+    experiments = design.candidates(args.pairs or design.PAIRS, tuple(args.height))
     first = next((p.name for p in result.parameters if p.mean), None)
-    target = design.Target(None if args.at else args.parameter or first, args.at)
-    e_dry = args.e_dry if args.e_dry is not None else _typical_e_dry(result)
+    target = design.Target(None if args.at is not None else args.parameter or first, args.at)
+    levels = design.levels_of(result, target, dict(args.level))
+    e_dry = args.e_dry if args.e_dry is not None else _typical_e_dry(result, levels)
     plan = design.Design(
-        result, target, e_dry, options[0].conditions, args.e_sigma, args.st_sigma, args.same_source
+        result, target, e_dry, experiments[0].conditions, args.e_sigma, args.st_sigma, args.same_source, levels
     )
-    gains = plan.rank(options, args.shots, args.beyond)
+    gains = plan.rank(experiments, args.shots, args.beyond)
     if not gains:
         raise InputError("no pair gives a Stokes number in the calibrated range: --height, --pairs, or --beyond")
     if args.plot:
@@ -77,25 +100,33 @@ def run(args: argparse.Namespace) -> None:
 
         drawing = draw(plan, gains, args.shots, target)
         write_whole(args.plot, drawing.svg if args.plot.endswith(".svg") else drawing.png)
-    what = f"e_eff at St {args.at:g}" if args.at else target.parameter
+    what = target.parameter if args.at is None else f"e_eff at St {args.at:g}"
+    most = args.shots[-1]
+    St, low, high = plan.best(most)
+    show(
+        f"{most} impacts narrow {what} most at St {St:.3g}; nine tenths of that anywhere from St {low:.3g} "
+        f"to {high:.3g}"
+    )
     show(f"standard error of {what} now: {plan.now:.3g}; after M impacts, as a fraction of it:")
-    _show(gains[: args.rows], args.shots)
-    if len(gains) > args.rows:
-        show(f"... {len(gains) - args.rows} more: --rows {len(gains)}")
+    rows = gains if args.all else design.best_of_pairs(gains)
+    _show(rows[: args.rows], args.shots)
+    if len(rows) > args.rows:
+        show(f"... {len(rows) - args.rows} more: --rows {len(rows)}")
 
 
-def _typical_e_dry(result) -> float | None:
-    """The middle of what the fitted impacts had, where e_dry was not estimated."""
-    low, high = result.e_dry_range
-    return 0.5 * (low + high) if high < 1.0 or low == high else None
+def _typical_e_dry(result: FitResult, levels: dict[str, str]) -> float | None:
+    """The median of what the fitted impacts of these levels had, where it was not estimated."""
+    known = [p.e_dry for p in result.points if p.e_dry is not None and levels.items() <= p.levels.items()]
+    return statistics.median(known) if known else None
 
 
 def _show(gains: list[Gain], shots: tuple[int, ...]) -> None:
-    headings = ("fluid", "sphere", "speed m/s", "St", "e_eff", *(f"M = {m}" for m in shots))
+    headings = ("fluid", "sphere", "fall m", "speed m/s", "St", "e_eff", *(f"M = {m}" for m in shots))
     rows = [
         (
             gain.candidate.fluid,
             gain.candidate.sphere,
+            "" if gain.candidate.height is None else f"{gain.candidate.height:g}",
             f"{gain.candidate.speed:.3g}",
             f"{gain.stokes:.3g}",
             f"{gain.e_eff:.2f}",

@@ -12,8 +12,8 @@ from restitution.commands import options
 from restitution.console import show, show_facts
 
 if TYPE_CHECKING:
-    from restitution.calibration.fitting import Plan
-    from restitution.calibration.impact_data import Reading
+    from restitution.calibration.impact_table import Reading
+    from restitution.calibration.plan import Plan
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -129,7 +129,7 @@ def _prior(text: str) -> tuple[str, tuple[float, float]]:
 
 def reading_of(args: argparse.Namespace) -> Reading:
     """How the files are read, from the options."""
-    from restitution.calibration.impact_data import Reading
+    from restitution.calibration.impact_table import Reading
     from restitution.conditions import read_conditions
     from restitution.stokes import Speed, convention
 
@@ -147,7 +147,7 @@ def reading_of(args: argparse.Namespace) -> Reading:
 
 def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, strict: bool = True) -> Plan:
     """What is estimated, from the options; without ``strict`` those that the law does not know are left out."""
-    from restitution.calibration.fitting import Plan
+    from restitution.calibration.plan import Plan
     from restitution.calibration.rebound_model import model_of
 
     bounds = dict(args.bounds)
@@ -206,7 +206,8 @@ def run(args: argparse.Namespace) -> None:
         for line in write_template(Path(args.template)):
             show(line)
         return
-    from restitution.calibration.fit_result import describe, result_of
+    from restitution.calibration.fit_result import result_of
+    from restitution.calibration.fit_summary import describe
     from restitution.calibration.fitting import estimate
     from restitution.calibration.impact_data import read
     from restitution.errors import Defect, InputError
@@ -214,11 +215,9 @@ def run(args: argparse.Namespace) -> None:
 
     if not args.data:
         raise InputError("name the data: CSV files or shipped records (--template FOLDER writes an example)")
-    for option, given in (("--out", args.out), ("--report", args.report)):
-        if given == "":
-            raise InputError(Defect("names no file", field=option))
-    if args.out and any(Path(args.out).resolve() == Path(d).resolve() for d in args.data if Path(d).exists()):
-        raise InputError(Defect("would replace an input", args.out, None, "--out"))
+    options.check_output("--out", args.out, args.data)
+    if args.report == "":
+        raise InputError(Defect("names no folder", field="--report"))
     observations = read(args.data, reading_of(args))
     fit = estimate(plan_of(args, args.law, args.law_stokes or observations.convention), observations)
     chain = None

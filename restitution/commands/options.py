@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 
 
 def add_columns(parser: argparse.ArgumentParser) -> None:
@@ -32,3 +33,19 @@ def assignment(text: str) -> tuple[str, float]:
         return name, float(value)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
+
+
+def check_output(option: str, out: str | None, inputs: Iterable[str] = ()) -> None:
+    """Refuse a file to write that would replace one of the ``inputs`` or cannot be written, before any work."""
+    from pathlib import Path
+
+    from restitution.errors import Defect, InputError
+    from restitution.files import check_place
+
+    if out is None:
+        return
+    if not out:
+        raise InputError(Defect("names no file", field=option))
+    if any(Path(given).exists() and Path(out).resolve() == Path(given).resolve() for given in inputs):
+        raise InputError(Defect("would replace an input", out, None, option))
+    check_place(out)

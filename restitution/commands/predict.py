@@ -84,12 +84,10 @@ def run(args: argparse.Namespace) -> None:
 
     from restitution.calibration.fit_result import read_fit
     from restitution.calibration.prediction import predict, stokes_of
-    from restitution.errors import Defect, InputError
+    from restitution.errors import InputError
 
     result = read_fit(args.fit)
     conditions = conditions_of(args)
-    if args.e_dry is not None and not 0 < args.e_dry <= 1:
-        raise InputError(Defect("must lie above 0 and be at most 1", field="--e-dry", value=f"{args.e_dry:g}"))
     if args.st is not None:
         St, speeds = np.array(args.st), None
     elif conditions is None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from restitution.report.drawing import Drawing, save, style
+from restitution.report.drawing import Drawing, save, stokes_axis, style
 
 if TYPE_CHECKING:
     from restitution.calibration.design import Design, Gain, Target
@@ -27,7 +27,7 @@ def draw(plan: Design, gains: list[Gain], shots: tuple[int, ...], target: Target
         for m, dashes in zip(shots, DASHES * len(shots), strict=False):
             ax.plot(St, plan.ratio(St, m), color="black", ls=dashes, label=f"{m} impact{'s' * (m > 1)}")
         ax.plot(reach, [g.ratio[-1] for g in gains], "o", ms=4, mfc="white", mec="black", label="feasible pairs")
-        ax.set_xscale("log")
+        stokes_axis(ax)
         ax.set_ylim(0, 1.02)
         ax.set_xlabel(f"Stokes number of the new impacts ({plan.result.stokes_convention}) [-]")
         what = target.parameter or f"$e_{{eff}}$ at St {target.stokes:g}"

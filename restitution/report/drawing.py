@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 STYLE = {
@@ -49,6 +50,17 @@ def save(figure: Figure, dpi: int = 160) -> Drawing:
     figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     figure.savefig(png, format="png", dpi=dpi, metadata={"Software": None})
     return Drawing(svg.getvalue(), png.getvalue())
+
+
+def stokes_axis(ax: Axes) -> None:
+    """A logarithmic axis of x that names 1, 2, 5, 10, ... as plain numbers, however short it is."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    ax.set_xscale("log")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    ax.xaxis.set_minor_locator(LogLocator(subs=tuple(range(1, 10))))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda St, _: f"{St:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def equation(latex: str) -> str:

@@ -12,8 +12,8 @@ import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from restitution.calibration.fitting import Plan
-from restitution.calibration.impact_data import Reading, from_table
+from restitution.calibration.impact_table import Reading, from_table
+from restitution.calibration.plan import Plan
 from restitution.calibration.ranking import Ranking, Score, rank
 from restitution.calibration.rebound_model import model_of
 from restitution.stokes import Speed

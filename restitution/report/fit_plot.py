@@ -8,7 +8,7 @@ import numpy as np
 
 from restitution.calibration.fit_result import FitResult, sources
 from restitution.calibration.prediction import predict
-from restitution.report.drawing import Drawing, save, style
+from restitution.report.drawing import Drawing, save, stokes_axis, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MARKERS = "osD^vP<>Xph*"
 DASHES = ("-", (0, (6, 2)), (0, (1, 1.2)), (0, (3, 1.5, 1, 1.5)))
 MOST_NAMES = 12
-"""Sources named in the legend; of more the markers repeat."""
+"""Sources, or levels of separate parameters, named in the legend; of more the markers repeat."""
 
 
 def draw(result: FitResult) -> Drawing:
@@ -28,7 +28,7 @@ def draw(result: FitResult) -> Drawing:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         _law(upper, result)
         _impacts(upper, lower, result)
-        upper.set_xscale("log")
+        stokes_axis(upper)
         highest = max([1.0, *(p.e_eff for p in result.points if p.e_eff is not None)])
         upper.set_ylim(min(0.0, *(p.e_eff for p in result.points if p.e_eff is not None)), 1.04 * highest)
         upper.set_ylabel(r"$e_{\mathrm{eff}}$  [-]")
@@ -61,9 +61,11 @@ def _law(ax: Axes, result: FitResult) -> None:
 
 
 def _impacts(upper: Axes, lower: Axes, result: FitResult) -> None:
-    names = sources(result)
+    many = len(sources(result)) > 1
+    named = [", ".join([*([p.source] if many else []), *p.levels.values()]) for p in result.points]
+    names = list(dict.fromkeys(named))
     for k, name in enumerate(names):
-        points = [p for p in result.points if p.source == name]
+        points = [p for p, own in zip(result.points, named, strict=True) if own == name]
         seen = [p for p in points if p.e_eff is not None]
         limits = [p for p in points if p.e_eff is None and p.e_eff_upper < (p.e_dry or 1.0)]
         marker, face = MARKERS[k % len(MARKERS)], ("black", "white")[(k // len(MARKERS) + k) % 2]
