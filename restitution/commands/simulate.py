@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 from pathlib import Path
 
 from restitution.console import show
@@ -99,7 +100,6 @@ def _write_template(case: Path, target: Path) -> None:
 def _report(folder: Path) -> None:
     """Print the contacts as the solver had them, the heights between them, and where the tables are."""
     import json
-    from itertools import pairwise
 
     import pandas as pd
 
@@ -107,8 +107,6 @@ def _report(folder: Path) -> None:
 
     about = json.loads((folder / "run.json").read_text())
     track, times = pd.read_csv(folder / "trajectory.csv"), [c["time_s"] for c in about["contacts"]]
-    between = [
-        track.gap_m[(track.time_s > a) & (track.time_s < b)] for a, b in zip(times, times[1:], strict=False)
-    ]
+    between = [track.gap_m[(track.time_s > a) & (track.time_s < b)] for a, b in itertools.pairwise(times)]
     show_contacts(about["contacts"], [1e3 * gap.max() for gap in between if len(gap)])
     show(f"{about['steps']} steps in {about['seconds']:.0f} s; results in {folder}")
