@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import math
 import re
 import subprocess
 import sys
@@ -334,3 +335,25 @@ def test_help_stays_quick():
     code += "if m in ('iminuit', 'emcee', 'numpy', 'pandas', 'scipy')])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_simulated_impacts_are_fitted_apart_and_under_one_definition(tmp_path, capsys):
+    """As 'simulate' and 'bounce' write them: three definitions of speed in one table."""
+    head = "record,impact,kind,speed_definition,stokes_convention,stokes,stokes_sigma,e_dry,e_eff,e_eff_sigma\n"
+    rows = [
+        f"run,{i},simulated,{d},st,{St},1,0.97,{0.97 * math.exp(-20 * 1.97 / St) + shift:.4f},0.02\n"
+        for i, St in enumerate((150, 80, 40, 25), 1)
+        for d, shift in (("far", 0.0), ("contact", 0.05), ("window", -0.05))
+    ]
+    (tmp_path / "run.csv").write_text(head + "".join(rows))
+    (tmp_path / "lab.csv").write_text(head + "".join(rows).replace("simulated", "measured").replace("run", "lab"))
+    out = tmp_path / "fit.json"
+    assert main(["fit", str(tmp_path / "run.csv"), "--speed", "far", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "simulated" in said
+    assert "8 impacts under other definitions" in said
+    fit = json.loads(out.read_text())
+    K = next(p for p in fit["parameters"] if p["name"] == "K")
+    assert K["value"] == pytest.approx(20, rel=0.02)
+    assert main(["fit", str(tmp_path / "lab.csv"), str(tmp_path / "run.csv"), "--speed", "far"]) == 2
+    assert "fit them apart" in capsys.readouterr().err

@@ -49,7 +49,7 @@ def from_table(
     table = table.reindex(columns=list(dict.fromkeys([*read_schema(SCHEMA).columns, *table.columns])))
     # A text column that the table lacks would be one of numbers, and take no text in its place.
     table = table.astype({f.name: object for f in read_schema(SCHEMA).fields if f.type == "string"})
-    use = np.array([kind != "simulated" for kind in table["kind"]], bool)
+    simulated, use, selection = _selected(table, how, file)
     table, rows = table[use].reset_index(drop=True), rows[use]
     per_row = _row_conditions(table, how)
     none = (table["outcome"].isin(["no_rebound", "not_resolved"])).to_numpy(bool)
@@ -64,6 +64,7 @@ def from_table(
     e_sigma, correlation = _errors(table, e, St, St_sigma)
     e = np.where(none, np.nan, e)
     notes = (
+        *selection,
         *_missing_sigmas(e_sigma, none, file),
         *_limits_of_zero(none & table["e_eff_upper"].isna(), file),
         *_zeros(e == 0, file),
@@ -87,11 +88,33 @@ def from_table(
         labels=labels,
         convention=stokes,
         speed=Speed(speed),
+        simulated=simulated,
         conditions=tuple(per_row),
         places=tuple((file, int(row)) for row in rows),
         files={file: digest},
         notes=notes,
     )
+
+
+def _selected(table: pd.DataFrame, how: Reading, file: str) -> tuple[bool, np.ndarray, list[str]]:
+    """Whether the impacts are simulated, which rows are taken, and what was left out in words.
+
+    Simulated impacts are never taken together with measured ones. Of a table under several definitions of speed,
+    as this package writes them, the rows of the one that is asked for are taken.
+    """
+    simulated = (table["kind"] == "simulated").to_numpy(bool)
+    every = len(table) > 0 and bool(simulated.all())
+    use, notes = simulated if every else ~simulated, []
+    if every:
+        notes.append(f"{file}: the impacts are simulated: what is fitted is a model, not measurements")
+    elif simulated.any():
+        notes.append(f"{file}: {simulated.sum()} simulated impacts are left out")
+    stated = table["speed_definition"]
+    if how.speed is not None and stated.nunique() > 1 and (stated == str(how.speed)).any():
+        other = use & (stated != str(how.speed)).to_numpy(bool)
+        notes.append(f"{file}: {other.sum()} impacts under other definitions than {how.speed} are left out")
+        use = use & ~other
+    return every, use, notes
 
 
 def conditions_of_row(row: Mapping[str, float]) -> Conditions:

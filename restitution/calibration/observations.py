@@ -41,6 +41,8 @@ class Observations:
     files: Mapping[str, str] = field(default_factory=dict)
     """sha256 of each file."""
     notes: tuple[str, ...] = ()
+    simulated: bool = False
+    """Whether they come from a simulation; such ones are never joined with measured ones."""
 
     def __len__(self) -> int:
         return len(self.St)
@@ -96,6 +98,11 @@ def join(parts: list[Observations]) -> Observations:
     """All observations of several files; raises :class:`InputError` where conventions differ."""
     first = parts[0]
     for other in parts[1:]:
+        if other.simulated != first.simulated:
+            kinds = ["measured", "simulated"]
+            here, there = kinds[other.simulated], kinds[first.simulated]
+            rule = f"has {here} impacts, the first file {there} ones: fit them apart"
+            raise InputError(Defect(rule, next(iter(other.files), None), field="kind"))
         for what in ("convention", "speed"):
             if getattr(other, what) != getattr(first, what):
                 file = next(iter(other.files), None)
