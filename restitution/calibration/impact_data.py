@@ -80,14 +80,19 @@ def _read_one(path: str, how: Reading) -> Observations:
 
 
 def _track_file(path: str, how: Reading, digest: str) -> Observations:
+    track, conditions = track_of(path, how)
+    return from_track(track, conditions, how, path, digest)
+
+
+def track_of(path: str, how: Reading) -> tuple[Track, Conditions]:
+    """The track in a file, and its conditions: the caller's, or those that its own columns state."""
     conditions = how.conditions or _conditions_of_track(path)
     columns = {k: v for k, v in how.columns.items() if k in ("time_s", "gap_m", "velocity_m_s")}
     header = read_header(path)
     value = next(name for name in ("gap_m", "velocity_m_s") if columns.get(name, name) in header)
     schema = datasets.schema("trajectory" if value == "gap_m" else "settling")
     mapped = {name: columns.get(name, name) for name in ("time_s", value)}
-    track = Track.from_table(read_table(path, schema, mapped))
-    return from_track(track, conditions, how, path, digest)
+    return Track.from_table(read_table(path, schema, mapped)), conditions
 
 
 def from_digitised(path: str, how: Reading, digest: str) -> Observations:
