@@ -23,6 +23,8 @@ FILES = {
     "impacts_by_speed.csv",
     "laws.csv",
     "readings.csv",
+    "trajectories.csv",
+    "trajectory_readings.csv",
     "index.html",
 }
 
