@@ -70,9 +70,9 @@ def run(args: argparse.Namespace) -> None:
     show_facts(_slopes(fit))
     _show_distances(result)
     if args.report:
-        from restitution.report import fit as report
+        from restitution.report import trajectory_fit as report
 
-        for name in report.write(args.report, result):
+        for name in report.write(args.report, fit, result):
             show(str(Path(args.report) / name))
 
 
