@@ -32,6 +32,7 @@ from restitution.calibration.recording_checks import begins_rising, bounces, che
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.impact_speed import H_FILM
+from restitution.tables import read_header
 from restitution.tracks import Track, contacts
 
 SCALE, LEVEL_D = 0.01, 0.01
@@ -114,6 +115,7 @@ def read_recordings(paths: Sequence[str], how: Reading) -> list[Recording]:
 def read_recording(path: str, how: Reading) -> Recording:
     """One record: a file, or a shipped one by its name."""
     if Path(path).exists():
+        _check_header(path, how)
         track, conditions = track_of(path, how)
         return recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())
     if path not in datasets.names():
@@ -135,6 +137,16 @@ def read_recording(path: str, how: Reading) -> Recording:
         clock_rate=error.scale_sigma.get("time_s", 0.0),
         scale=error.scale_sigma.get("gap_m", SCALE),
     )
+
+
+def _check_header(path: str, how: Reading) -> None:
+    """Refuse a file without time and gap."""
+    header = read_header(path)
+    for name in ("time_s", "gap_m"):
+        own = how.columns.get(name, name)
+        if own not in header:
+            rule = f"is missing: a trajectory has time and gap; the header names {', '.join(header)}"
+            raise InputError(Defect(rule, path, 1, own))
 
 
 def recording(

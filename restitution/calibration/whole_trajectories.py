@@ -149,8 +149,11 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
         centre[1:] = np.clip(centre[1:], steps[1:], 1 - steps[1:])
         before = {"height": 0.0, "speed": -centre[0], "impact": -_fall_speed(r)}[r.start.kind]
         flights = expand_about(lambda x: integrate(r, x, wake), centre, steps, len(centre), before)
-        if flights.flights < len(centre):
-            raise InputError(Defect(f"bounce {flights.flights} does not rise in the model", r.name))
+        if flights.flights < len(centre):  # a last bounce so low that the model has none, or not in all of the map
+            if flights.flights < 2:
+                raise InputError(Defect("the model does not bounce where the record does", r.name))
+            centre, steps, eta = centre[: flights.flights], steps[: flights.flights], None
+            continue
         found = RecordLikelihood(r, flights, noise, np.zeros(0))
         mean, sigma = found.prior
         if eta is None:
@@ -168,6 +171,8 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
         if moved < 1.5:
             own = found.prior[1] * np.sqrt(np.diag(m.moments()[1]))
             steps, narrow = np.clip(own[found.first :], 0.02 * steps, steps), True
+    else:
+        raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", r.name))
     return _summary(r, wake, found, m)
 
 

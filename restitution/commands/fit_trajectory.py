@@ -46,6 +46,9 @@ def run(args: argparse.Namespace) -> None:
     if args.speed not in (None, "far"):
         rule = "a whole trajectory gives the speed of the motion outside the film: far"
         raise InputError(Defect(rule, field="--speed", value=args.speed))
+    if args.separate:
+        rule = "does not go with --trajectory: records differ by their offset; fit them one by one instead"
+        raise InputError(Defect(rule, field="--separate", value=args.separate[0][0]))
     how = command.reading_of(args)
     wakes = {"auto": (False, True), "on": (True,), "off": (False,)}[args.wake]
     plans = {

@@ -115,7 +115,9 @@ def in_words(t: Trajectories) -> list[str]:
         for s in t.rankings[wake].scores
         if not _K(s)[1] <= 18 <= _K(s)[2]
     ]
-    if outside:
+    if len(outside) == sum(len(ranking.scores) for ranking in t.rankings.values()):
+        words.append("K = 18 lies outside the 95 % interval of every form under both models.")
+    elif outside:
         words.append(f"K = 18 lies outside the 95 % interval of {', '.join(outside)}.")
     return words
 
