@@ -23,6 +23,8 @@ FILES = {
     "impacts_by_speed.csv",
     "laws.csv",
     "readings.csv",
+    "trajectories.csv",
+    "trajectory_readings.csv",
     "index.html",
 }
 
@@ -36,6 +38,24 @@ def report(tmp_path_factory):
 
 def test_all_files_and_nothing_else(report):
     assert {p.name for p in report.iterdir()} == FILES
+
+
+def test_whole_trajectories_meet_the_frames_and_agree_with_slopes(report):
+    records = pd.read_csv(report / "trajectories.csv").set_index(["model", "record"])
+    assert len(records) == 14
+    waked = records.loc["with the wake of the approach"]
+    assert waked.rms_d["gondret2002_st152"] < 0.06
+    assert waked.rms_law_d["gondret2002_st152"] < 0.06
+    assert (waked.rms_d.drop("gondret2002_st152") < 0.01).all()
+    # e_eff of the first three bounces by slopes and their errors, as the impacts command prints them.
+    for n, e, sigma in ((1, 0.807, 0.022), (2, 0.707, 0.020), (3, 0.529, 0.053)):
+        assert waked[f"e_{n}"]["gondret2002_st152"] == pytest.approx(e, abs=2 * sigma)
+    forms = pd.read_csv(report / "trajectory_readings.csv")
+    slopes = pd.read_csv(report / "readings.csv")
+    far = slopes[(slopes.speed_definition == "far") & (slopes.parameters == "K fitted")].set_index("law")
+    for row in forms.itertuples():  # one definition of speed, so the intervals must overlap
+        assert row.K_low_95 < far.K_high_95[row.law]
+        assert row.K_high_95 > far.K_low_95[row.law]
 
 
 def test_second_run_gives_the_same_bytes(report, tmp_path):

@@ -89,9 +89,9 @@ def test_page_loads_nothing_and_shows_all(report):
 
 def test_stale_runs_are_shown_as_such(report):
     scores = pd.read_csv(report / "out" / "scores.csv").set_index("case")
-    assert scores.stale.to_dict() == dict.fromkeys((*fig2.SHORT, *point_particle.closures()), False) | {
-        "gondret_st152_16": True
-    }
+    assert scores.stale.to_dict() == dict.fromkeys(
+        (*fig2.SHORT, *point_particle.closures(), point_particle.FITTED), False
+    ) | {"gondret_st152_16": True}
 
 
 def test_point_particle_is_scored_by_the_measure_of_the_runs(report):

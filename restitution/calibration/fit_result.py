@@ -66,6 +66,31 @@ class Chain(Record):
     draws: tuple[tuple[float, ...], ...]
 
 
+class TrajectoryRecord(Record):
+    """One record of a fit to whole trajectories: its unknowns as value and standard deviation, noise, distances.
+
+    ``rms_d`` is with the restitutions that the record has itself, ``rms_law_d`` with those of the fitted law, its
+    clock known from the approach alone. Noise: median, and standard deviation of the logarithm.
+    """
+
+    record: str
+    wake: bool
+    frames: int
+    frames_at_rest: int
+    reading_sigma_m: float
+    unknowns: dict[str, tuple[float, float]]
+    correlated_sigma_m: tuple[float, float]
+    correlation_time_s: tuple[float, float]
+    log_evidence: float
+    log_evidence_other_wake: float | None
+    rms_d: float
+    rms_law_d: float
+    apex_1_law_m: float
+    impacts_law: int
+    map_error: float
+    """Of the interpolated trajectory, at most, in standard deviations of a reading."""
+
+
 class FitResult(Record):
     """Everything that a prediction, a report or another program needs of a fit."""
 
@@ -87,6 +112,8 @@ class FitResult(Record):
     robust: bool
     points: tuple[Point, ...]
     posterior: Chain | None = None
+    trajectories: tuple[TrajectoryRecord, ...] = ()
+    """Of a fit to whole trajectories."""
     files: dict[str, str]
     versions: dict[str, str]
     notes: tuple[str, ...]

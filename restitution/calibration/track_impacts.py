@@ -28,13 +28,18 @@ def is_track(header: list[str], how: Reading) -> bool:
 
 
 def from_track_file(path: str, how: Reading, digest: str) -> Observations:
-    """The impacts of a track in a file; its conditions are the caller's, or stand in its own columns."""
+    """The impacts of a track in a file."""
+    track, conditions = track_of(path, how)
+    return from_track(track, conditions, how, path, digest)
+
+
+def track_of(path: str, how: Reading) -> tuple[Track, Conditions]:
+    """The track in a file, and its conditions: the caller's, or those that its own columns state."""
     conditions = how.conditions or _conditions_of_track(path)
     header = read_header(path)
     value = next(name for name in QUANTITIES if how.columns.get(name, name) in header)
     columns = {name: how.columns.get(name, name) for name in ("time_s", value)}
-    track = Track.from_table(read_table(path, datasets.schema(QUANTITIES[value]), columns))
-    return from_track(track, conditions, how, path, digest)
+    return Track.from_table(read_table(path, datasets.schema(QUANTITIES[value]), columns)), conditions
 
 
 def from_track(track: Track, conditions: Conditions, how: Reading, name: str, digest: str) -> Observations:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from restitution.commands import options
+from restitution.commands import fit_trajectory, options
 from restitution.console import show, show_facts
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--law",
         metavar="LAW",
-        default="eq4_exponential",
         help="a rebound law by name (eq4_exponential), or a formula in St, e_dry and parameters of your own, as "
         'in "e_dry*exp(-(a/St)**n)"; see --bounds',
     )
@@ -35,6 +34,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--law-stokes", metavar="CONVENTION", help="which Stokes number St in a formula is (that of the data)"
     )
     add_plan(parser)
+    fit_trajectory.add_options(parser)
     parser.add_argument("--posterior", action="store_true", help="also sample the posterior (emcee)")
     parser.add_argument("--seed", type=int, default=0, help="of the posterior's random numbers (0)")
     parser.add_argument("--out", metavar="FILE", help="write the fit as JSON, for predict and design")
@@ -218,8 +218,14 @@ def run(args: argparse.Namespace) -> None:
     options.check_output("--out", args.out, args.data)
     if args.report == "":
         raise InputError(Defect("names no folder", field="--report"))
+    if args.trajectory:
+        fit_trajectory.run(args)
+        return
+    if args.wake != "auto":
+        raise InputError(Defect("belongs to --trajectory", field="--wake", value=args.wake))
     observations = read(args.data, reading_of(args))
-    fit = estimate(plan_of(args, args.law, args.law_stokes or observations.convention), observations)
+    law = args.law or "eq4_exponential"
+    fit = estimate(plan_of(args, law, args.law_stokes or observations.convention), observations)
     chain = None
     if args.posterior:
         from restitution.calibration.fit_result import chain_of
@@ -229,9 +235,11 @@ def run(args: argparse.Namespace) -> None:
     result = result_of(fit, chain)
     if args.out:
         write_whole(args.out, result.to_json())
-    show_facts(describe(result))
+    written = []
     if args.report:
         from restitution.report import fit as report
 
-        for name in report.write(args.report, result):
-            show(str(Path(args.report) / name))
+        written = report.write(args.report, result)
+    show_facts(describe(result))
+    for name in written:
+        show(str(Path(args.report) / name))

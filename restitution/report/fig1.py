@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from restitution.conditions import Conditions
     from restitution.kept_runs import KeptRun
+    from restitution.report.fig1_trajectories import Trajectories
     from restitution.report.fig1_verdict import Judgement
 
 SPEED = Speed.CONTACT
@@ -44,6 +45,7 @@ class Fig1:
     conditions: dict[str, Conditions]
     notes: list[str]
     judgements: list[Judgement]
+    trajectories: Trajectories
     simulated: dict[str, KeptRun] = field(default_factory=dict)
 
     @property
@@ -61,14 +63,14 @@ def gather(speed: Speed = SPEED, runs: str | Path | None = None) -> Fig1:
     ``runs`` is the folder of kept simulations: those that predict the rebound add a series that enters no score.
     """
     simulated = {} if runs is None else predicted(Path(runs))
-    every, scores, conditions, notes, judgements = _everything()
+    every, scores, conditions, notes, judgements, trajectories = _everything()
     rows = [row | _provenance_of_run(run) for run in simulated.values() for row in run.impacts.to_dict("records")]
     if rows:
         import pandas as pd
 
         every = pd.concat([every, pd.DataFrame(rows, columns=every.columns)], ignore_index=True)
     impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
-    return Fig1(impacts, every, scores, conditions, notes[str(speed)], judgements, simulated)
+    return Fig1(impacts, every, scores, conditions, notes[str(speed)], judgements, trajectories, simulated)
 
 
 @cache
@@ -76,6 +78,7 @@ def _everything() -> tuple:
     """What does not depend on the definition of speed that the figure takes: shipped data do not change."""
     import pandas as pd
 
+    from restitution.report import fig1_trajectories
     from restitution.report.fig1_verdict import judge
 
     resources = [r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory"]
@@ -96,7 +99,8 @@ def _everything() -> tuple:
         scores.append(comparison.score(known, measured, conditions).assign(speed_definition=str(definition)))
     every = pd.concat(tables, ignore_index=True)
     judgements = judge(every, conditions, (*EQ4_READINGS, *OTHERS))
-    return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements
+    whole = fig1_trajectories.gather([r.name for r in resources if r.kind == "measured"])
+    return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements, whole
 
 
 def predicted(folder: Path) -> dict[str, KeptRun]:
@@ -141,7 +145,7 @@ def _provenance_of_run(run: KeptRun) -> dict[str, object]:
 
 def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = None) -> list[str]:
     """Write the report into ``folder``; returns the names of the files. The same input gives the same bytes."""
-    from restitution.report import fig1_page, fig1_plot, fig1_verdict
+    from restitution.report import fig1_page, fig1_plot, fig1_trajectories, fig1_verdict
 
     fig1 = gather(speed, runs)
     drawing = fig1_plot.draw(fig1, speed)
@@ -152,6 +156,8 @@ def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = No
         "impacts_by_speed.csv": _csv(fig1.every),
         "laws.csv": _csv(fig1.scores),
         "readings.csv": _rounded(fig1_verdict.table(fig1.judgements)),
+        "trajectories.csv": _digits(fig1_trajectories.records(fig1.trajectories)),
+        "trajectory_readings.csv": _rounded(fig1_trajectories.table(fig1.trajectories)),
         "index.html": fig1_page.render(fig1, speed, drawing.svg),
     }
     write_folder(folder, files)
@@ -161,6 +167,13 @@ def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = No
 def _csv(table: pd.DataFrame) -> str:
     # Five digits: the sixth may depend on the machine's arithmetic.
     return table.to_csv(index=False, float_format="%.5g", lineterminator="\n")
+
+
+def _digits(rows: list[dict]) -> str:
+    """Estimates to three digits: the fourth may depend on the machine's arithmetic."""
+    import pandas as pd
+
+    return pd.DataFrame(rows).to_csv(index=False, float_format="%.3g", lineterminator="\n")
 
 
 def _rounded(rows: list[dict]) -> str:

@@ -8,6 +8,7 @@ from restitution import datasets, laws
 from restitution.impact_speed import H_FILM
 from restitution.impacts import find_impacts
 from restitution.report import fig1 as content
+from restitution.report import fig1_trajectories
 from restitution.report.fig1_verdict import in_words, table
 from restitution.report.page import render as render_page
 from restitution.stokes import CONVENTIONS, Speed
@@ -38,6 +39,9 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         verdict=_verdict(overall),
         support=in_words(fig1.judgements, content.EQ4_READINGS),
         judged=_judged(fig1.judgements),
+        trajectory_support=fig1_trajectories.in_words(fig1.trajectories),
+        trajectory_rows=fig1_trajectories.table(fig1.trajectories),
+        trajectory_records=fig1_trajectories.records(fig1.trajectories),
         records=len(measured),
         experiments=len({r.experiment.doi for r in measured}),
         spread=_spread(fig1.every),

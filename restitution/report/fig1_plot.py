@@ -65,6 +65,7 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
             _known_without_points(ax)
             if ax is left:
                 _band(ax, fig1, speed)
+                _trajectory_band(ax, fig1)
             _lines(ax, names, fig1)
             _points(ax, fig1)
             ax.set_title(title, loc="left", fontsize=11)
@@ -74,7 +75,10 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
             ax.set_xlabel(r"Stokes number at impact  $St=\rho_p v d/(9\mu)$  [-]")
             handles = [h for h in ax.get_lines() if h.get_label() in {LINES[n][0] for n in names}]
             handles += [h for h in ax.collections if h.get_label().startswith("95 %")]
-            ax.legend(handles=handles, loc="lower right", fontsize=8.5, handlelength=3.6)
+            ax.legend(
+                handles=handles, loc="lower right", fontsize=8, handlelength=3.6, frameon=True, framealpha=0.85,
+                edgecolor="none", borderpad=0.1,
+            )  # fmt: skip
         left.set_ylabel(r"effective restitution  $e_{\mathrm{eff}}/e_{\mathrm{dry}}$  [-]")
         drawn = set(fig1.impacts.record.map(_series))
         points = [_key(name) for name in SERIES if name in drawn]
@@ -106,6 +110,18 @@ def _known_without_points(ax: Axes) -> None:
         ax.axvspan(low, high, color="#e9e9e9", lw=0, zorder=0)
         words = f"{text}\n(Joseph et al.\n2001)"
         ax.text(np.sqrt(low * high), 0.66, words, ha="center", va="center", fontsize=7.5, color="#333333")
+
+
+def _trajectory_band(ax: Axes, fig1: Fig1) -> None:
+    """The same of the fit to whole trajectories, hatched."""
+    St = np.geomspace(St_MIN, St_MAX, 600)
+    K, law = fig1.trajectories.band(St, E_DRY, _drawn_for(fig1))
+    low, high = np.clip(law / E_DRY, 0, None).T
+    form = _FORMS[fig1.trajectories.best.label]
+    label = f"95 % of {form}, K from all positions: {K:.1f}"
+    ax.fill_between(
+        St, low, high, facecolor="none", edgecolor="#0072B2", hatch="////", lw=0.9, zorder=1.5, label=label
+    )
 
 
 def _lines(ax: Axes, names: tuple[str, ...], fig1: Fig1) -> None:

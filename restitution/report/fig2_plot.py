@@ -11,7 +11,7 @@ from restitution import datasets
 from restitution.bounces import frame_velocity
 from restitution.flow_pictures import MOMENTS
 from restitution.report.drawing import Drawing, save, style
-from restitution.report.point_particle import DRY, RATIONAL
+from restitution.report.point_particle import DRY, FITTED, RATIONAL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +32,7 @@ LINES = {
 POINTS = {
     DRY: ("point particle: $e_{dry}$, cavitating film", "#009E73", (0, (3, 1, 1, 1))),
     RATIONAL: ("point particle: Eq. (4), rational", "#CC79A7", (0, (7, 1.5, 1, 1.5))),
+    FITTED: ("point particle: Eq. (4), K by all positions, wake; 95 %", "#555555", (0, (2, 1))),
 }
 PUBLISHED_LINE = {"color": "#888888", "lw": 1.0, "marker": "D", "ms": 3, "mfc": "#cccccc", "mec": "#888888"}
 MEASURED = {
@@ -71,6 +72,10 @@ def draw(fig2: Fig2) -> Drawing:
             look = {"color": colour, "ls": dashes, "lw": 1.1, "zorder": 2}
             top.plot(line.time_s * 1e3, line.velocity_m_s, label=label, **look)
             bottom.plot(line.time_s * 1e3, line.gap_m / d, **look)
+            if line.band_m is not None:
+                low, high = (gap / d for gap in line.band_m)
+                band = {"facecolor": "none", "edgecolor": colour, "hatch": "////", "lw": 0.4, "zorder": 1}
+                bottom.fill_between(line.time_s * 1e3, low, high, **band)
         for ax, values in zip((top, bottom), _published(fig2, published.contacts_s), strict=True):
             scale = 1 if ax is top else 1 / d
             ax.plot(

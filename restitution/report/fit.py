@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,14 +14,23 @@ if TYPE_CHECKING:
     from restitution.calibration.fit_result import FitResult
 
 
-def write(folder: str | Path, result: FitResult) -> list[str]:
-    """Write the report into ``folder``; returns the names of the files."""
+def write(
+    folder: str | Path,
+    result: FitResult,
+    template: str = "fit.html.j2",
+    more: Mapping[str, str | bytes] | None = None,
+    **content: object,
+) -> list[str]:
+    """Write the report into ``folder``; returns the names of the files.
+
+    ``more`` are further files; ``content`` is what a ``template`` that extends the fit's own needs besides.
+    """
     from restitution.report import fit_plot
     from restitution.report.page import render
 
     drawing = fit_plot.draw(result)
     page = render(
-        "fit.html.j2",
+        template,
         title=f"Fit of {result.law.name or result.law.text}",
         command="restitution fit DATA --report FOLDER",
         fit=result,
@@ -29,6 +38,7 @@ def write(folder: str | Path, result: FitResult) -> list[str]:
         alternative=_alternative(result),
         equation_latex=_latex(result),
         rises=_separable(result),
+        **content,
     )
     files = {
         "figure.svg": drawing.svg,
@@ -36,6 +46,7 @@ def write(folder: str | Path, result: FitResult) -> list[str]:
         "parameters.csv": _parameters(result),
         "impacts.csv": _impacts(result),
         "fit.json": result.to_json(),
+        **(more or {}),
         "index.html": page,
     }
     write_folder(folder, files)

@@ -1,12 +1,13 @@
 """The point-particle model in the Fig. 2 report: its lines for a record, their scores, and each force off in turn.
 
-The sphere is released as it was filmed: its first frame, at the mean speed of the approach.
+The sphere is released as it was filmed: its first frame, at the mean speed of the approach. One line has the K
+that all positions of all measured records give (:mod:`restitution.calibration.trajectory_fit`), and a band.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 DRY, DRY_WAKE, RATIONAL = "point_particle_dry", "point_particle_dry_wake", "point_particle_eq4_rational"
+FITTED, FITTED_LAW = "point_particle_eq4_fitted", "eq4_exponential"
+_BAND_LINES = 5
 _AFTER_S, _STEP_S = 0.3, 1e-4
 
 
@@ -37,6 +40,8 @@ class PointLine:
     record: str
     contact: str
     path: Trajectory
+    others: tuple[Trajectory, ...] = ()
+    """The same over the 95 % interval of what was fitted."""
 
     @property
     def conditions(self) -> Conditions:
@@ -58,6 +63,14 @@ class PointLine:
     def velocity_m_s(self) -> NDArray:
         """At ``time_s``."""
         return self.path.velocity(self.time_s + self.path.impacts[0].time_s)
+
+    @cached_property
+    def band_m(self) -> tuple[NDArray, NDArray] | None:
+        """Least and greatest gap at ``time_s`` over the interval; None for a line without one."""
+        if not self.others:
+            return None
+        gaps = [path.gap(self.time_s + path.impacts[0].time_s) for path in (self.path, *self.others)]
+        return np.min(gaps, axis=0), np.max(gaps, axis=0)
 
     @property
     def contacts_s(self) -> NDArray:
@@ -88,10 +101,38 @@ def lines(record: str) -> list[PointLine]:
     conditions, track = datasets.resource(record).conditions, datasets.load_track(record)
     release = release_of(track, conditions)
     end = float(np.ptp(track.time_s)) + _AFTER_S
-    return [
+    found = [
         PointLine(name, record, contact, bounce(conditions, release, chosen, end))
         for name, (contact, chosen) in closures().items()
     ]
+    K, low, high = fitted_K()
+    path, *others = (
+        bounce(conditions, release, Closures(rebound=laws.get(FITTED_LAW, K=k), wake=OwnWake()), end)
+        for k in (K, *np.linspace(low, high, _BAND_LINES))
+    )
+    contact = f"{FITTED_LAW}, K = {K:.1f} ({low:.1f} to {high:.1f}) by all positions, wake of the approach"
+    return [*found, PointLine(FITTED, record, contact, path, tuple(others))]
+
+
+@cache
+def fitted_K() -> tuple[float, float, float]:
+    """K of the first-ranked reading and its 95 % interval by whole trajectories, all measured records, with wake.
+
+    Three digits: the fourth may depend on the machine's arithmetic.
+    """
+    from restitution.calibration.impact_table import Reading
+    from restitution.calibration.plan import Plan
+    from restitution.calibration.rebound_model import model_of
+    from restitution.calibration.recordings import read_recordings
+    from restitution.calibration.trajectory_fit import Measured, law_fit, observations
+
+    bouncing = (r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory")
+    names = [r.name for r in bouncing if r.kind == "measured" and r.conditions.sphere.e_dry is not None]
+    how = Reading()
+    measured = Measured.of(read_recordings(names, how), (True,))
+    found = law_fit(Plan(model_of(FITTED_LAW)), observations(measured.found[True], how)).maximum
+    K, low, high = (float(f"{x:.3g}") for x in (found.values[0], *found.intervals[0.95][0]))
+    return K, low, high
 
 
 def physics(record: str) -> pd.DataFrame:

@@ -1,0 +1,78 @@
+"""What a recorded trajectory must be before a model of a bouncing sphere is fitted to it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from restitution.bounce import terminal_speed
+from restitution.bounce.closures import excess_weight
+from restitution.bounce.forces import GREATEST_RE, expected_reynolds
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.stokes import StokesNumber
+from restitution.tracks import DETECTION, Contacts, Track
+
+LEAST_FRAMES, LEAST_RISE_D, BELOW_D, CENTRE = 8, 0.02, 0.02, 0.2
+"""Frames; in diameters the rise of at least one bounce, how far noise reaches below the wall, the lowest gap."""
+SPEEDS = (0.02, 20.0)
+"""Between which parts of the terminal speed a record's fastest frames must be; a wrong unit is out by 1000."""
+
+
+def check(name: str, track: Track, found: Contacts, conditions: Conditions) -> None:
+    """Refuse what cannot be a bouncing sphere's gap in metres."""
+    excess_weight(conditions)
+    d, terminal = conditions.sphere.diameter, terminal_speed(conditions)
+    if track.quantity != "gap":
+        raise InputError(Defect("has velocities; a fit to trajectories needs gaps", name, None, "velocity_m_s"))
+    if conditions.sphere.e_dry is None:
+        raise InputError(Defect("must be stated: the rebound needs a dry restitution", name, None, "sphere.e_dry"))
+    if len(track.time_s) < LEAST_FRAMES:
+        rule = f"has {len(track.time_s)} frames; a trajectory needs at least {LEAST_FRAMES}"
+        raise InputError(Defect(rule, name))
+    if expected_reynolds(conditions, 0.0) > GREATEST_RE:
+        St = StokesNumber.from_speed(terminal, conditions).value
+        rule = f"makes the sphere fall at {terminal:.2g} m/s, St = {St:.2g}: in millimetres?"
+        raise InputError(Defect(rule, name, None, "sphere.diameter", f"{d:g}"))
+    speeds = np.abs(np.diff(track.value) / np.diff(track.time_s))
+    fastest = float(np.quantile(speeds, 0.95))
+    if not SPEEDS[0] * terminal < fastest < SPEEDS[1] * terminal:
+        row = int(np.argmax(speeds)) + 3
+        St, expected = (StokesNumber.from_speed(v, conditions).value for v in (fastest, terminal))
+        rule = (
+            f"moves at {fastest:.3g} m/s, St = {St:.2g}, where this sphere falls at {terminal:.2g} m/s at most, "
+            f"St = {expected:.2g}: are gap and diameter in metres, time in seconds?"
+        )
+        raise InputError(Defect(rule, name, row, "gap_m", f"{track.value[row - 2]:g}"))
+    if track.value[0] < -max(DETECTION * track.sigma, BELOW_D * d):
+        raise InputError(Defect("starts below the wall", name, 2, "gap_m", f"{track.value[0]:g}"))
+    if not _rises(track, found, d):
+        rule = f"has no bounce that rises by {LEAST_RISE_D:g} d: a rebound law cannot be fitted to it"
+        raise InputError(Defect(rule, name))
+    lowest = int(np.argmin(track.value))
+    if track.value[lowest] > CENTRE * d:
+        rule = (
+            f"is the lowest of the record, {track.value[lowest] / d:.2g} d above the wall: is it the height of "
+            "the centre? The gap is that of the lowest point, less by d/2"
+        )
+        raise InputError(Defect(rule, name, lowest + 2, "gap_m", f"{track.value[lowest]:g}"))
+
+
+def begins_rising(track: Track) -> bool:
+    """Whether the record begins on a rebound."""
+    return bool(track.value[2] > track.value[0])
+
+
+def bounces(track: Track, found: Contacts) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """When the sphere bounced, to a frame (nan where that was not filmed), and by how much it then rose in m."""
+    touches = [(math.nan, 0)] if begins_rising(track) else []
+    touches += [(float(track.time_s[c.nearest]), c.nearest) for c in found.contacts if c.nearest is not None]
+    begins = [i for _, i in touches]
+    ends = [*begins[1:], len(track.value)][: len(begins)]
+    rises = [np.max(track.value[i:j]) - track.value[i] for i, j in zip(begins, ends, strict=True)]
+    return tuple(t for t, _ in touches), tuple(map(float, rises))
+
+
+def _rises(track: Track, found: Contacts, d: float) -> bool:
+    return max(bounces(track, found)[1], default=0.0) > LEAST_RISE_D * d

@@ -1,0 +1,150 @@
+"""``restitution fit --trajectory``: a law from all positions of whole trajectories."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from restitution.console import show, show_facts, show_rows
+
+if TYPE_CHECKING:
+    from restitution.calibration.fit_result import FitResult
+    from restitution.calibration.impact_table import Reading
+    from restitution.calibration.ranking import Ranking
+    from restitution.calibration.trajectory_fit import Measured, TrajectoryFit
+
+READINGS = ("eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The options that belong to trajectories."""
+    parser.add_argument(
+        "--trajectory",
+        action="store_true",
+        help="fit to all positions of tracks of time and gap, by the equation of motion of a bouncing sphere; "
+        "without --law every reading of Eq. (4), ranked",
+    )
+    parser.add_argument(
+        "--wake",
+        choices=("auto", "on", "off"),
+        default="auto",
+        help="with --trajectory: whether the sphere meets the wake of its approach (auto: what the frames prefer)",
+    )
+
+
+def run(args: argparse.Namespace) -> None:
+    """Fit, print, and write what was asked for."""
+    from restitution.calibration.fit_result import chain_of
+    from restitution.calibration.fit_summary import describe
+    from restitution.calibration.recordings import read_recordings
+    from restitution.calibration.trajectory_fit import Measured, fit_law
+    from restitution.commands import fit as command
+    from restitution.errors import Defect, InputError
+    from restitution.files import write_whole
+
+    if args.speed not in (None, "far"):
+        rule = "a whole trajectory gives the speed of the motion outside the film: far"
+        raise InputError(Defect(rule, field="--speed", value=args.speed))
+    if args.separate:
+        rule = "does not go with --trajectory: records differ by their offset; fit them one by one instead"
+        raise InputError(Defect(rule, field="--separate", value=args.separate[0][0]))
+    how = command.reading_of(args)
+    wakes = {"auto": (False, True), "on": (True,), "off": (False,)}[args.wake]
+    plans = {
+        law: command.plan_of(args, law, args.law_stokes or how.stokes or "st", strict=args.law is not None)
+        for law in ((args.law,) if args.law else READINGS)
+    }
+    measured = Measured.of(read_recordings(args.data, how), wakes)
+    _show_records(measured)
+    best = args.law
+    if best is None:
+        best = _rank(measured, plans, how)
+    fit = fit_law(measured, plans[best], how)
+    result = fit.result()
+    if args.posterior:
+        from restitution.calibration.posterior import sample
+
+        chain = sample(fit.fit.likelihood, fit.fit.maximum, args.seed, progress=sys.stderr.isatty())
+        result = result.model_copy(update={"posterior": chain_of(chain)})
+    if args.out:
+        write_whole(args.out, result.to_json())
+    show_facts(describe(result))
+    show_facts(_slopes(fit))
+    _show_distances(result)
+    if args.report:
+        from restitution.report import trajectory_fit as report
+
+        for name in report.write(args.report, fit, result):
+            show(str(Path(args.report) / name))
+
+
+def _show_records(measured: Measured) -> None:
+    """What each record says, law or no law."""
+    rows = []
+    for wake, found in measured.found.items():
+        for t in found:
+            d = t.recording.conditions.sphere.diameter
+            known = dict(zip(t.names, zip(t.mean, t.sigma, strict=True), strict=True))
+            e = ", ".join(f"{m:.3f} +- {s:.3f}" for n, (m, s) in known.items() if n.startswith("e_"))
+            start = "{} {:.4g} +- {:.2g}".format(t.recording.start.name, *known[t.recording.start.name])
+            scale = "{:.3f} +- {:.3f}".format(*known["scale"])
+            noise = f"{t.sigma_u[0] / d:.2g} d, {1e3 * t.tau[0]:.2g} ms"
+            rows.append((t.recording.name, "yes" if wake else "no", e, start, scale, noise, f"{t.rms_d:.4f}",
+                         f"{t.log_evidence:.1f}"))  # fmt: skip
+    heads = ("record", "wake", "e of each bounce", "start", "scale", "correlated noise", "rms/d", "ln evidence")
+    show_rows(heads, rows, right=("rms/d", "ln evidence"))
+
+
+def _rank(measured: Measured, plans: dict, how: Reading) -> str:
+    """Every reading, with the wake and without; the best one under the model that the frames prefer."""
+    from restitution.calibration.fit_result import result_of
+    from restitution.calibration.ranking import rank
+    from restitution.calibration.trajectory_fit import law_fit, observations
+
+    best = ""
+    for wake, found in measured.found.items():
+        o = observations(found, how)
+        ranking: Ranking = rank(list(plans.items()), o)
+        rows = []
+        for s in ranking.scores:
+            fit = result_of(law_fit(plans[s.label], o))
+            p = fit.parameters[0]
+            ends = [f"{a:.2f} to {b:.2f}" for a, b in p.intervals.values()]
+            gap, error = ranking.difference(ranking.scores[0], s)
+            behind = "best" if s is ranking.scores[0] else f"{gap:.1f} +- {error:.1f}"
+            apart = "yes" if s is not ranking.scores[0] and ranking.separated(ranking.scores[0], s) else ""
+            out = "" if s.elpd_loso is None else f"{s.elpd_loso:.1f}"
+            rows.append((s.label, f"{p.value:.2f}", *ends, f"{s.log_likelihood:.1f}", behind, out, apart))
+        show(f"{'with' if wake else 'without'} the wake of the approach, {len(o)} impacts:")
+        heads = ("law", "K", "68 %", "95 %", "ln L", "elpd behind", "elpd, record out", "separated")
+        show_rows(heads, rows, right=("K", "ln L"))
+        for name, reason in ranking.failed.items():
+            show(f"{name}: {reason}")
+        if wake == measured.preferred:
+            best = ranking.scores[0].label
+    return best
+
+
+def _slopes(fit: TrajectoryFit) -> list[tuple[str, str]]:
+    """The slope-based fit beside it."""
+    if isinstance(fit.slopes, str):
+        return [("by slopes", f"no fit: {fit.slopes}")]
+    found = fit.slopes.maximum
+    facts = []
+    for j, p in enumerate(found.parameters):
+        if p.mean:
+            low, high = found.intervals[0.68][j]
+            facts.append(("by slopes", f"{p.name} {found.values[j]:.5g} (68% {low:.5g} to {high:.5g})"))
+    return facts
+
+
+def _show_distances(result: FitResult) -> None:
+    """How far the model with the fitted law is from each record."""
+    rows = [
+        (t.record, f"{t.rms_law_d:.4f}", f"{t.rms_d:.4f}", f"{1e3 * t.apex_1_law_m:.3f}")
+        for t in result.trajectories
+    ]
+    heads = ("record", "rms/d, e by the law", "rms/d, its own e", "first apex by the law, mm")
+    show_rows(heads, rows, right=heads[1:])
