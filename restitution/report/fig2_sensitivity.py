@@ -29,7 +29,7 @@ SENSITIVITY = (
         ("gondret_st152_10_measured", "gondret_st152_10_eq4", "gondret_st152_10_legendre"),
     ),
     ("width of the box", ("gondret_st152_10", "gondret_st152_10_wide")),
-    ("lattice speed", ("gondret_st152_10", "gondret_st152_10_fast")),
+    ("lattice speed", ("gondret_st152_10", "gondret_st152_10_fast", "gondret_st152_10_slow")),
     (
         "film: what the grid lacks, or Eq. (3) from 1 or 2 cells on",
         ("gondret_st152_10", "gondret_st152_10_cutoff1", "gondret_st152_10_cutoff2"),
