@@ -91,7 +91,7 @@ def closures() -> dict[str, tuple[str, Closures]]:
     """What is shown: the contact in words, and the closures."""
     return {
         DRY: ("e_dry, cavitating film, no wake", Closures()),
-        DRY_WAKE: ("e_dry, cavitating film, wake of the approach", Closures(wake=OwnWake())),
+        DRY_WAKE: ("e_dry, cavitating film, wake", Closures(wake=OwnWake())),
         RATIONAL: ("eq4_rational", Closures(rebound=laws.get("eq4_rational"))),
     }
 
@@ -110,7 +110,7 @@ def lines(record: str) -> list[PointLine]:
         bounce(conditions, release, Closures(rebound=laws.get(FITTED_LAW, K=k), wake=OwnWake()), end)
         for k in (K, *np.linspace(low, high, _BAND_LINES))
     )
-    contact = f"{FITTED_LAW}, K = {K:.1f} ({low:.1f} to {high:.1f}) by all positions, wake of the approach"
+    contact = f"{FITTED_LAW}, K = {K:.1f}, wake"
     return [*found, PointLine(FITTED, record, contact, path, tuple(others))]
 
 
