@@ -9,7 +9,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.stats import multivariate_normal
 
 from benchmarks.coverage_trajectory import CASES, Case, K, draw, filmed
-from restitution import datasets
+from restitution import datasets, laws
 from restitution.bounce import Closures, Release, bounce
 from restitution.bounce.agreement import release_of
 from restitution.calibration.correlated_noise import gram_matrices
@@ -21,6 +21,7 @@ from restitution.calibration.recordings import read_recordings, recording
 from restitution.calibration.trajectory_fit import law_fit, observations
 from restitution.calibration.whole_trajectories import integrate, whole_trajectory
 from restitution.cli import main
+from restitution.errors import InputError
 from restitution.tracks import Track
 
 QUIET = Case("", 0.0)
@@ -237,3 +238,34 @@ def test_start_of_the_shipped_record_is_its_approach():
     track = datasets.load_track("gondret2002_st152")
     r = read_recordings(["gondret2002_st152"], Reading())[0]
     assert r.start.prior.mean == pytest.approx(release_of(track, r.conditions).speed, rel=1e-3)
+
+
+@pytest.mark.parametrize(("history", "doubted"), [({"history": None}, True), ({}, False)])
+def test_a_flight_under_other_forces_is_doubted(history, doubted, tmp_path, capsys):
+    """Frames of a sphere without history force: the model that has it cannot be right, and says so."""
+    conditions = datasets.resource("gondret2002_st152").conditions
+    law = laws.get("eq4_exponential", K=10.0)
+    path = bounce(conditions, Release(0.012, 0.58, developed=True), Closures(rebound=law, **history), 0.16)
+    time = np.arange(0.0, 0.16, 0.002)
+    gap = path.gap(time) + np.random.default_rng(1).normal(0, 1e-5, len(time))
+    rows = "".join(f"{t:.6f},{h:.8f}\n" for t, h in zip(time, gap, strict=True))
+    (tmp_path / "track.csv").write_text("time_s,gap_m\n" + rows)
+    (tmp_path / "conditions.toml").write_text(
+        "[fluid]\ndensity = 935\nviscosity = 0.01\n[sphere]\ndiameter = 0.003\ndensity = 7800\ne_dry = 0.97\n"
+    )
+    command = [
+        "fit",
+        "--trajectory",
+        str(tmp_path / "track.csv"),
+        "--conditions",
+        str(tmp_path / "conditions.toml"),
+    ]
+    assert main([*command, "--law", "eq4_exponential", "--wake", "off"]) == 0
+    assert ("doubt" in capsys.readouterr().out) == doubted
+
+
+def test_a_record_that_rests_below_the_wall_is_refused(tmp_path):
+    track = datasets.load_track("gondret2002_st152")
+    sunk = Track(track.time_s, track.value - 0.001, track.quantity, track.sigma)
+    with pytest.raises(InputError, match="below the wall"):
+        recording("sunk", sunk, datasets.resource("gondret2002_st152").conditions)

@@ -12,7 +12,7 @@ def describe(result: FitResult) -> list[tuple[str, str]]:
         ("law", f"{result.law.name or 'own formula'}: {result.law.text}"),
         ("Stokes number", f"{result.stokes_convention} in the data, {result.law.convention} in the law"),
         ("impact speed", result.speed_definition),
-        ("impacts", f"{g.measured} measured, {g.censored} without a rebound; sources: {len(sources(result))}"),
+        ("impacts", f"{g.measured} with a rebound, {g.censored} without; sources: {len(sources(result))}"),
     ]
     facts += [(name, f"{value:g} (fixed)") for name, value in result.fixed.items()]
     for p in result.parameters:

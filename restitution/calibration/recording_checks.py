@@ -45,10 +45,13 @@ def check(name: str, track: Track, found: Contacts, conditions: Conditions) -> N
             f"St = {expected:.2g}: are gap and diameter in metres, time in seconds?"
         )
         raise InputError(Defect(rule, name, row, "gap_m", f"{track.value[row - 2]:g}"))
+    if (found.level or 0.0) < -CENTRE * d:
+        rule = f"comes to rest {-found.level / d:.2g} d below the wall: is the gap zero where they touch?"
+        raise InputError(Defect(rule, name, None, "gap_m", f"{found.level:g}"))
     if track.value[0] < -max(DETECTION * track.sigma, BELOW_D * d):
         raise InputError(Defect("starts below the wall", name, 2, "gap_m", f"{track.value[0]:g}"))
     if not _rises(track, found, d):
-        rule = f"has no bounce that rises by {LEAST_RISE_D:g} d: a rebound law cannot be fitted to it"
+        rule = f"has no bounce that rises by {LEAST_RISE_D:g} d: nothing to fit (is all in m, kg, s?)"
         raise InputError(Defect(rule, name))
     lowest = int(np.argmin(track.value))
     if track.value[lowest] > CENTRE * d:

@@ -20,6 +20,7 @@ from restitution.calibration.observations import Observations, join
 from restitution.calibration.plan import Plan
 from restitution.calibration.recordings import Recording
 from restitution.calibration.track_impacts import from_track
+from restitution.calibration.trajectory_doubts import in_words
 from restitution.calibration.whole_trajectories import (
     WholeTrajectory,
     distance_d,
@@ -124,7 +125,7 @@ class TrajectoryFit:
         """What is kept: the fit, and beside it every record's unknowns, noise and distances."""
         base = result_of(self.fit)
         records = tuple(self._record(t) for t in self.found)
-        notes = [*base.notes, self.wake_in_words()]
+        notes = [*base.notes, self.wake_in_words(), *in_words(self.found, self.fit, self.slopes)]
         return base.model_copy(update={"trajectories": records, "notes": tuple(notes)})
 
     def wake_in_words(self) -> str:
