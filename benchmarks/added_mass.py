@@ -15,37 +15,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from lbm import Rates, Simulation
+from benchmarks import impulsive_start
 from lbm.contact import lattice_added_mass
-from lbm.spheres import Sphere, Spheres
 
-VISCOSITY, SPEED = 1e-4, 1e-3
+VISCOSITY = 1e-4
 WIDTH, HEIGHT = 6, 5
-
-
-class _Held(Spheres):
-    """Spheres that keep place and speed."""
-
-    def __init__(self, *args, **kwargs):
-        super().__init__(*args, **kwargs)
-        self.felt: list[float] = []
-
-    def _move(self, s, step, grid):
-        self.felt.append(self.forces[s, 2])
 
 
 def impulse(diameter: int, gap: float) -> float:
     """Mean impulse over displaced mass and speed between 2 and 4 d/c_s after the start."""
-    n = diameter
-    flow = Simulation(
-        (WIDTH * n, WIDTH * n, HEIGHT * n), Rates.two_relaxation_times(VISCOSITY), faces={"z": "no-slip"}
-    )
-    centre = (WIDTH * n / 2, WIDTH * n / 2, gap + n / 2)
-    held = _Held([Sphere(n / 2, 8.0, centre, velocity=(0.0, 0.0, SPEED))])
-    flow.add(held)
-    flow.run(round(4 * n * 3**0.5))
-    taken = -np.cumsum(held.felt) / (SPEED * held.volumes[0])
-    return float(np.mean(taken[round(2 * n * 3**0.5) :]))
+    sound = diameter * 3**0.5
+    taken = impulsive_start.impulse(diameter, VISCOSITY, gap, round(4 * sound), WIDTH, HEIGHT)
+    return float(np.mean(taken[round(2 * sound) :]))
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from restitution.report.fig2 import Fig2
 
 GRIDS = ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20")
-SMALL_GRIDS = tuple(f"{name}_small" for name in GRIDS)
+SMALL_GRIDS = (*(f"{name}_small" for name in GRIDS), "gondret_st152_20_small_slow")
 
 
 def in_words(fig2: Fig2, main: str, record: str, soft: str) -> list[str]:
@@ -61,12 +61,12 @@ def _restitution(run: KeptRun, record: str) -> str:
 
 
 def _grids(table: pd.DataFrame, names: tuple[str, ...], where: str) -> str | None:
-    """How far the apexes of several grids are apart, with the same closures."""
+    """How far the apexes of several grids and lattice speeds are apart, with the same closures."""
     known = [name for name in names if name in table.index]
     if len(known) < 2:
         return None
     rows = table.loc[known]
-    cells = ", ".join(f"{c:g}" for c in rows.cells_per_diameter)
+    cells, speeds = (", ".join(f"{v:g}" for v in rows[c]) for c in ("cells_per_diameter", "lattice_speed"))
     shown = []
     for k, which in ((1, "first"), (2, "second")):
         apexes = rows[f"apex_{k}_m"]
@@ -74,4 +74,7 @@ def _grids(table: pd.DataFrame, names: tuple[str, ...], where: str) -> str | Non
         shown.append(f"{which} apex {values} mm, {100 * (apexes.max() / apexes.min() - 1):.1f} % between them")
     error = percent(rows["apex_1_error"].iloc[-1])
     both = "; ".join(shown)
-    return f"With {cells} cells per diameter{where}: {both}; the finest is {error} from the record's first apex."
+    return (
+        f"With {cells} cells per diameter and lattice speeds of {speeds}{where}: {both}; "
+        f"the last is {error} from the record's first apex."
+    )

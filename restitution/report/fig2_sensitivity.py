@@ -12,24 +12,28 @@ if TYPE_CHECKING:
     from restitution.report.fig2 import Fig2
 
 SENSITIVITY = (
-    ("cells per diameter, contact (b)", ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20")),
+    (
+        "cells per diameter, contact (b); at 20 half the lattice speed and 6 d wide",
+        ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20"),
+    ),
     (
         "cells per diameter, contact (b), in a smaller box",
         ("gondret_st152_10_small", "gondret_st152_16_small", "gondret_st152_20_small"),
     ),
     ("a box 6 d wide and 12 d high, a way of 9 d", ("gondret_st152_10", "gondret_st152_10_small")),
-    (
-        "cells per diameter, contact (a)",
-        ("gondret_st152_10_measured", "gondret_st152_16_measured", "gondret_st152_20_measured"),
-    ),
+    ("cells per diameter, contact (a)", ("gondret_st152_10_measured", "gondret_st152_16_measured")),
     ("cells per diameter, contact (c)", ("gondret_st152_10_soft", "gondret_st152_16_soft")),
     ("dry restitution 0.97 or 0.99", ("gondret_st152_10", "gondret_st152_10_elastic")),
     (
         "contact (a): e_eff of each bounce as measured, or by a law",
         ("gondret_st152_10_measured", "gondret_st152_10_eq4", "gondret_st152_10_legendre"),
     ),
-    ("width of the box", ("gondret_st152_10", "gondret_st152_10_wide")),
+    ("width of the box", ("gondret_st152_10", "gondret_st152_10_narrow", "gondret_st152_10_wide")),
     ("lattice speed", ("gondret_st152_10", "gondret_st152_10_fast", "gondret_st152_10_slow")),
+    (
+        "lattice speed at 20 cells, in the smaller box",
+        ("gondret_st152_20_small", "gondret_st152_20_small_slow"),
+    ),
     (
         "film: what the grid lacks, or Eq. (3) from 1 or 2 cells on",
         ("gondret_st152_10", "gondret_st152_10_cutoff1", "gondret_st152_10_cutoff2"),

@@ -1,0 +1,66 @@
+"""The first rebound at St 152 by cells a diameter and lattice speed, in a box that is quick to run.
+
+The case `gondret_st152_10` with a way of 4 d, too short for the wake to form, in a box 5 d wide and 10 d high; the
+table gives the speeds at contact, the gap 8.4 ms later and the mean speed from 4.4 ms on. Compressibility falls
+with the lattice speed; so does the viscosity in lattice units, below some 0.0015 of which the sphere is slowed.
+
+    python -m benchmarks.rebound_grid [CELLS:LATTICE_SPEED ...]
+"""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+
+from restitution.case import Case
+from restitution.case_files import read_case
+from restitution.resolved import ResolvedRun
+
+GRIDS = ("10:0.05", "10:0.025", "10:0.0125", "16:0.025", "20:0.05", "20:0.025", "20:0.0125")
+EARLY_S, LATE_S = 4.4e-3, 8.4e-3
+
+
+def short(cells: int, lattice_speed: float) -> Case:
+    """The case, cut down."""
+    case = read_case("gondret_st152_10")
+    numerics = {
+        "cells_per_diameter": float(cells), "lattice_speed": lattice_speed, "width_d": 5.0, "height_d": 10.0,
+    }  # fmt: skip
+    return case.model_copy(
+        update={
+            "release": case.release.model_copy(update={"gap_d": 4.0}),
+            "numerics": case.numerics.model_copy(update=numerics),
+            "run": case.run.model_copy(update={"after_contact": LATE_S + 1e-4}),
+        }
+    )
+
+
+def rebound(cells: int, lattice_speed: float) -> tuple[float, float, float, float]:
+    """Speeds at the wall before and after contact and mean speed later in m/s, and the gap then in m."""
+    run = ResolvedRun(short(cells, lattice_speed))
+    while not run.finished:
+        run.advance()
+    motion, contact = run.motion(), run.contacts[0]
+    early, late = np.interp((EARLY_S, LATE_S), motion.time_s, motion.gap_m)
+    return contact.speed_in_m_s, contact.speed_out_m_s, (late - early) / (LATE_S - EARLY_S), late
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("grids", nargs="*", default=GRIDS, metavar="CELLS:LATTICE_SPEED")
+    console = Console(width=110)
+    table = Table("cells", "lattice speed", "in m/s", "out m/s", "4.4 to 8.4 ms m/s", "gap at 8.4 ms mm")
+    for grid in track(parser.parse_args().grids, "runs", console=console, transient=True):
+        cells, speed = grid.split(":")
+        *speeds, gap = rebound(int(cells), float(speed))
+        table.add_row(cells, speed, *(f"{v:.4f}" for v in speeds), f"{gap * 1e3:.3f}")
+    console.print(table)
+
+
+if __name__ == "__main__":
+    main()
