@@ -22,6 +22,7 @@ class RunProgress:
         self._name, self._cells, self._shown = name, cells, shown
         self._start = self._last = time.perf_counter()
         self._steps, self._state = 0, ""
+        self._first: tuple[float, float] | None = None
         console = Console(file=sys.stderr)
         self._bar = None
         if shown and console.is_interactive:
@@ -51,12 +52,17 @@ class RunProgress:
         now = time.perf_counter()
         speed = self._steps * self._cells / 1e6 / max(now - self._start, 1e-9)
         share = time_s / max(expected_s, time_s)
+        begin = self._first is None
+        if self._first is None:  # a resumed run begins far on: its pace is counted from here
+            self._first = now, time_s
         self._state = f"t = {time_s:.4g} of about {expected_s:.3g} s, gap {gap_d:.2f} d, {speed:.3g} MLUPS"
         if self._bar is not None:
-            self._bar.update(self._task, total=1.0, completed=share, state=self._state)
+            change = self._bar.reset if begin else self._bar.update
+            change(self._task, total=1.0, completed=share, state=self._state)
         elif self._shown and now - self._last >= _SECONDS_PER_LINE:
             self._last = now
-            self._line(f", {(now - self._start) * (1 - share) / max(share, 1e-9):.0f} s left")
+            since, way = now - self._first[0], time_s - self._first[1]
+            self._line(f", {since * (expected_s - time_s) / way:.0f} s left" if way > 0 else "")
 
     def _line(self, end: str) -> None:
         print(f"{self._name}: {self._state}{end}", file=sys.stderr)  # noqa: T201
