@@ -1,8 +1,10 @@
 """The first rebound at St 152 by cells a diameter and lattice speed, in a box that is quick to run.
 
-The case `gondret_st152_10` with a way of 4 d, too short for the wake to form, in a box 5 d wide and 10 d high; the
+The case `gondret_st152_10` with a way of 4 d, too short for the wake to form, in a box 5 d wide and 6 d high; the
 table gives the speeds at contact, the gap 8.4 ms later and the mean speed from 4.4 ms on. Compressibility falls
 with the lattice speed; so does the viscosity in lattice units, below some 0.0015 of which the sphere is slowed.
+The point particle of the same case, with potential flow's added mass, all of Brenner's resistance and a history
+force, stands below.
 
     python -m benchmarks.rebound_grid [CELLS:LATTICE_SPEED ...]
 """
@@ -10,14 +12,18 @@ with the lattice speed; so does the viscosity in lattice units, below some 0.001
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
+from restitution.bounce import OwnWake
 from restitution.case import Case
 from restitution.case_files import read_case
+from restitution.point_particle import closures_of, predict
 from restitution.resolved import ResolvedRun
 
 GRIDS = ("10:0.05", "10:0.025", "10:0.0125", "16:0.025", "20:0.05", "20:0.025", "20:0.0125")
@@ -28,7 +34,7 @@ def short(cells: int, lattice_speed: float) -> Case:
     """The case, cut down."""
     case = read_case("gondret_st152_10")
     numerics = {
-        "cells_per_diameter": float(cells), "lattice_speed": lattice_speed, "width_d": 5.0, "height_d": 10.0,
+        "cells_per_diameter": float(cells), "lattice_speed": lattice_speed, "width_d": 5.0, "height_d": 6.0,
     }  # fmt: skip
     return case.model_copy(
         update={
@@ -44,9 +50,21 @@ def rebound(cells: int, lattice_speed: float) -> tuple[float, float, float, floa
     run = ResolvedRun(short(cells, lattice_speed))
     while not run.finished:
         run.advance()
-    motion, contact = run.motion(), run.contacts[0]
+    contact = run.contacts[0]
+    return contact.speed_in_m_s, contact.speed_out_m_s, *_later(run.motion())
+
+
+def point_particle(wake: OwnWake | None) -> tuple[float, float, float, float]:
+    """The same of the point particle."""
+    case = short(10, 0.025)
+    path = predict(case, closures=replace(closures_of(case), wake=wake))
+    contact = path.contacts[0]
+    return contact["speed_in_m_s"], contact["speed_out_m_s"], *_later(path.table())
+
+
+def _later(motion: pd.DataFrame) -> tuple[float, float]:
     early, late = np.interp((EARLY_S, LATE_S), motion.time_s, motion.gap_m)
-    return contact.speed_in_m_s, contact.speed_out_m_s, (late - early) / (LATE_S - EARLY_S), late
+    return (late - early) / (LATE_S - EARLY_S), late
 
 
 def main() -> None:
@@ -57,9 +75,15 @@ def main() -> None:
     table = Table("cells", "lattice speed", "in m/s", "out m/s", "4.4 to 8.4 ms m/s", "gap at 8.4 ms mm")
     for grid in track(parser.parse_args().grids, "runs", console=console, transient=True):
         cells, speed = grid.split(":")
-        *speeds, gap = rebound(int(cells), float(speed))
-        table.add_row(cells, speed, *(f"{v:.4f}" for v in speeds), f"{gap * 1e3:.3f}")
+        table.add_row(cells, speed, *_shown(rebound(int(cells), float(speed))))
+    for name, wake in (("no wake", None), ("wake", OwnWake())):
+        table.add_row("point particle", name, *_shown(point_particle(wake)))
     console.print(table)
+
+
+def _shown(found: tuple[float, ...]) -> list[str]:
+    *speeds, gap = found
+    return [*(f"{v:.4f}" for v in speeds), f"{gap * 1e3:.3f}"]
 
 
 if __name__ == "__main__":
