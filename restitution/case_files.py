@@ -58,7 +58,7 @@ def find(given: str | Path) -> Path:
     if path.is_dir():
         raise InputError(Defect("is a folder; name the case's TOML file", str(given)))
     near = difflib.get_close_matches(path.stem, known, n=3, cutoff=0.5)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"shipped: {', '.join(known)}"
+    hint = f"did you mean {' or '.join(near)}?" if near else "restitution simulate --list names those"
     raise InputError(Defect(f"is no file and no shipped case; {hint}", str(given)))
 
 

@@ -20,6 +20,16 @@ def check_place(path: str | Path) -> None:
         raise InputError(Defect(f"cannot be written: the folder {place.parent} is not writable", str(path)))
 
 
+def check_folder(path: str | Path) -> None:
+    """Raise :class:`InputError` where files could not be put into a folder, which need not exist yet."""
+    place = Path(path)
+    if place.exists() and not place.is_dir():
+        raise InputError(Defect("is not a folder", str(path)))
+    there = next(p for p in (place, *place.absolute().parents) if p.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        raise InputError(Defect(f"cannot be written: {there} is not a folder that can be written", str(path)))
+
+
 def write_whole(path: str | Path, content: str | bytes) -> None:
     """Write one file aside in its folder, which must exist, then rename it into place; links are followed.
 

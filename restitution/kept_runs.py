@@ -6,7 +6,7 @@ Each lies in a folder of its own, ``reports/runs/CASE/``, with the files that :m
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,9 +22,15 @@ from restitution.simulate import KEPT, can_resume, simulate
 from restitution.tables import read_table
 
 if TYPE_CHECKING:
+    import numpy as np
     import pandas as pd
 
+    from restitution.table_schema import TableSchema
+
 FOLDER = Path("reports/runs")
+RESOLVED = "resolved"
+"""The model of a run whose ``run.json`` names none."""
+_MEND = "delete its folder, and the report makes the run again, or leaves it out if it is not one of its figure"
 
 
 class SolverContact(BaseModel):
@@ -38,6 +44,7 @@ class SolverContact(BaseModel):
 class About(BaseModel):
     """``run.json``."""
 
+    model: str = RESOLVED
     key: str
     case_hash: str
     code_hash: str
@@ -87,32 +94,81 @@ def read_run(case: Case, folder: Path = FOLDER) -> KeptRun | None:
     place = folder / case.name
     if not (place / "run.json").is_file():
         return None
-    try:
-        about = About.model_validate(json.loads((place / "run.json").read_bytes()))
-    except (ValidationError, ValueError):
-        rule = "is damaged: delete the folder, or repeat the run with --fresh"
-        raise InputError(Defect(rule, str(place / "run.json"))) from None
-    stale = about.key != run_key(case).key
-    if stale:
+    about = _about(place)
+    if about.key == run_key(case).key:
+        return _result(place, case, about, stale=False)
+    return _as_it_was_run(place, about)
+
+
+def own_runs(folder: Path, known: Collection[str]) -> list[KeptRun]:
+    """Results in ``folder`` whose names are not ``known``, of a user's own cases, under their folders' names.
+
+    Those of the point-particle model, which has no grid, are left out. Raises :class:`InputError` naming all
+    damaged ones.
+    """
+    found, defects = [], []
+    for place in sorted(folder.iterdir()) if folder.is_dir() else ():
+        if place.name in known or not (place / "run.json").is_file():
+            continue
         try:
-            case = Case.model_validate(about.case_as_run)
-        except ValidationError:
-            return None
-    trajectory = read_table(place / "trajectory.csv", datasets.schema("trajectory"))
-    velocity = read_table(place / "velocity.csv", datasets.schema("settling"))
-    impacts = _impacts(place / "impacts.csv")
+            about = _about(place)
+            found.append(_as_it_was_run(place, about) if about.model == RESOLVED else None)
+        except InputError as error:
+            defects += error.defects
+    if defects:
+        raise InputError(*defects)
+    return [run for run in found if run is not None]
+
+
+def _about(place: Path) -> About:
+    path = place / "run.json"
+    try:
+        about = About.model_validate(json.loads(path.read_bytes()))
+    except (ValidationError, ValueError):
+        raise InputError(Defect(f"is damaged: {_MEND}", str(path))) from None
+    if not about.finished:
+        raise InputError(Defect(f"is of a run that did not finish: {_MEND}", str(path)))
+    return about
+
+
+def _as_it_was_run(place: Path, about: About) -> KeptRun | None:
+    try:
+        case = Case.model_validate(about.case_as_run)
+    except ValidationError:
+        return None
+    stale = about.key != run_key(case).key
+    return _result(place, case.model_copy(update={"name": place.name}), about, stale)
+
+
+def _result(place: Path, case: Case, about: About, stale: bool) -> KeptRun:
+    tables, defects = {}, []
+    for name, table in (("trajectory", "trajectory"), ("velocity", "settling"), ("impacts", "impact")):
+        try:
+            tables[name] = _table(place / f"{name}.csv", datasets.schema(table), name == "impacts")
+            if name != "impacts":
+                _check_end(place / f"{name}.csv", tables[name].time_s.to_numpy(float), about)
+        except InputError as error:
+            defects += error.defects
+    if defects:
+        raise InputError(*defects, Defect(f"has damaged tables: {_MEND}", str(place)))
     flow = FlowFrames()
     flow.read(place / "flow.npz")
-    return KeptRun(case, about, trajectory, velocity, impacts, flow, stale)
+    return KeptRun(case, about, **tables, flow=flow, stale=stale)
 
 
-def _impacts(path: Path) -> pd.DataFrame:
+def _table(path: Path, schema: TableSchema, may_be_empty: bool) -> pd.DataFrame:
     import pandas as pd
 
-    schema = datasets.schema("impact")
-    if len(path.read_text("utf-8").splitlines()) < 2:
+    if may_be_empty and len(path.read_text("utf-8").splitlines()) < 2:
         return pd.DataFrame(columns=list(schema.columns))
     return read_table(path, schema)
+
+
+def _check_end(path: Path, time: np.ndarray, about: About) -> None:
+    """A table that was cut is well formed; it ends before the run did."""
+    end = time[0] + about.steps * about.step_s
+    if len(time) > 1 and time[-1] < end - 2 * (time[1] - time[0]):
+        raise InputError(Defect(f"ends before the run, which went on to {end:.4g} s", str(path), len(time) + 1))
 
 
 def ensure(

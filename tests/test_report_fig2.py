@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -118,8 +119,9 @@ def test_second_report_gives_the_same_bytes(report, tmp_path):
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
 
 
-def test_page_without_verification_says_so(report, tmp_path):
-    fig2.write(tmp_path, report / "runs", tmp_path / "none.json")
+def test_page_without_verification_says_so(report, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    fig2.write(tmp_path, report / "runs")
     assert "No figures are kept" in (tmp_path / "index.html").read_text()
 
 
@@ -139,3 +141,58 @@ def test_predicted_rebounds_join_figure_1_without_a_score(report):
     assert "gondret_st152_10_measured" not in set(joined.impacts.record)
     pd.testing.assert_frame_equal(alone.scores, joined.scores)
     assert set(datasets.names()).isdisjoint(joined.simulated)
+
+
+def refused(runs, tmp_path, capsys, **options):
+    """The lines of a report that is refused before anything is simulated or written."""
+    places = {"runs": runs, "out": tmp_path / "out", **options}
+    words = [str(word) for name, place in places.items() for word in (f"--{name}", place)]
+    assert main(["report", "fig2", *words]) == 2
+    assert not (tmp_path / "out").exists()
+    return capsys.readouterr().err.splitlines()
+
+
+@pytest.fixture
+def runs(report, tmp_path):
+    """A copy of the kept runs, to be spoilt."""
+    return shutil.copytree(report / "runs", tmp_path / "runs")
+
+
+def test_all_that_is_damaged_is_named_at_once(runs, tmp_path, capsys):
+    (runs / "gondret_st152_10" / "run.json").write_text("{")
+    about = json.loads((runs / "gondret_st152_16" / "run.json").read_text())
+    (runs / "gondret_st152_16" / "run.json").write_text(json.dumps(about | {"finished": False}))
+    (runs / "gondret_st152_10_soft" / "velocity.csv").write_text("time_s\n0\n")
+    lines = refused(runs, tmp_path, capsys)
+    for name in ("gondret_st152_10/run.json", "gondret_st152_16/run.json", "gondret_st152_10_soft/velocity.csv"):
+        assert any(name in line for line in lines)
+
+
+def test_a_table_that_was_cut_is_refused(runs, tmp_path, capsys):
+    place = runs / "gondret_st152_10"
+    table = (place / "trajectory.csv").read_text().splitlines()
+    about = json.loads((place / "run.json").read_text())
+    about |= {"steps": len(table) - 2, "step_s": 2e-4}
+    (place / "run.json").write_text(json.dumps(about))
+    assert fig2.gather(runs).scores is not None
+    (place / "trajectory.csv").write_text("\n".join(table[: len(table) // 2]) + "\n")
+    assert any("trajectory.csv" in line and "ends before" in line for line in refused(runs, tmp_path, capsys))
+
+
+def test_places_that_cannot_be_are_refused_before_anything_is_run(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert len(refused(tmp_path / "file", tmp_path, capsys)) == 1
+    for checks in ("file", "no.json"):
+        assert len(refused(tmp_path / "none", tmp_path, capsys, checks=tmp_path / checks)) == 1
+    assert main(["report", "fig2", "--runs", str(tmp_path / "none"), "--out", str(tmp_path / "file")]) == 2
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_run_of_ones_own_case_is_scored(runs, tmp_path):
+    shutil.copytree(runs / "gondret_st152_10", runs / "mine")
+    found = fig2.gather(runs)
+    assert found.own == ["mine"]
+    scores = found.scores.set_index("case")
+    assert scores.apex_1_m["mine"] == scores.apex_1_m["gondret_st152_10"]
+    fig2.write(tmp_path / "out", runs)
+    assert "mine" in (tmp_path / "out" / "index.html").read_text()

@@ -29,7 +29,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "fig2",
         help="the bouncing sphere in time: simulated and measured",
         description="Simulated and measured trajectories. Runs of the figure that are missing or stale are made "
-        "first (minutes), unchanged ones are not repeated; stopped ones are continued.",
+        "first (minutes), unchanged ones are not repeated; stopped ones are continued. Runs of your own cases "
+        "(simulate CASE --out reports/runs/NAME) are scored beside them.",
     )
     add.add_argument(
         "--full", action="store_true", help="make all shipped cases, not those of the figure alone (hours)"
@@ -39,8 +40,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     add.add_argument(
         "--checks",
         metavar="FILE",
-        default="benchmarks/sphere.json",
-        help="verification to show (benchmarks/sphere.json)",
+        help="verification to show (benchmarks/sphere.json, if there is one)",
     )
     _add_runs(add)
     add.set_defaults(run=run_fig2)
@@ -72,11 +72,13 @@ def run_fig2(args: argparse.Namespace) -> int:
     import sys
 
     from restitution.errors import Defect, InputError
+    from restitution.files import check_folder
     from restitution.report import fig2
 
-    for option in ("out", "runs"):
+    for option in ("out", "runs"):  # before runs are made that take minutes
         if not getattr(args, option):
             raise InputError(Defect("names no folder", field=f"--{option}"))
+        check_folder(getattr(args, option))
 
     def say(text: str) -> None:
         print(text, file=sys.stderr)  # noqa: T201

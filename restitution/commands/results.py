@@ -7,8 +7,9 @@ from pathlib import Path
 
 from restitution.console import show, show_rows
 from restitution.errors import Defect, InputError
+from restitution.kept_runs import RESOLVED
 
-RESOLVED, POINT_PARTICLE = "resolved", "point particle"
+POINT_PARTICLE = "point particle"
 _SHOWN = 12
 
 

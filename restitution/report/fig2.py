@@ -8,7 +8,7 @@ of the code that made them.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,9 +17,10 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from restitution import case_files, datasets
 from restitution.bounces import Bounces, filmed
+from restitution.case import Case
 from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder
-from restitution.kept_runs import FOLDER, KeptRun, ensure, read_run
+from restitution.kept_runs import FOLDER, KeptRun, ensure, own_runs, read_run
 from restitution.report.fig2_scores import scores
 from restitution.report.point_particle import PointLine, draw_physics, lines, physics
 from restitution.simulate import csv
@@ -61,11 +62,13 @@ class Fig2:
     failed: dict[str, str] = field(default_factory=dict)
     lines: list[PointLine] = field(default_factory=list)
     """The point-particle model on the main record."""
+    own: list[str] = field(default_factory=list)
+    """Runs of cases that are not shipped."""
 
 
 def gather(
     runs: str | Path = FOLDER,
-    verification: str | Path = VERIFICATION,
+    verification: str | Path | None = None,
     full: bool = False,
     fresh: bool = False,
     show: Callable[[str], None] | None = None,
@@ -74,16 +77,19 @@ def gather(
 
     ``fresh`` repeats the wanted ones. A run that stops in error is named in ``failed`` and the report goes on.
     """
-    runs, found, failed = Path(runs), {}, {}
-    for name in sorted(case_files.names(), key=lambda n: (n not in SHORT, n)):
-        case = case_files.read_case(name)
-        if full or name in SHORT:
-            try:
-                found[name] = ensure(case, runs, fresh, show)
-            except StoppedError as error:
-                failed[name] = str(error)
-        elif (kept := read_run(case, runs)) is not None:
-            found[name] = kept
+    runs, failed, checks = Path(runs), {}, _checks(verification)
+    cases = {name: case_files.read_case(name) for name in case_files.names()}
+    made = set(cases) if full else set(SHORT)
+    found = _kept(cases, runs, skip=made if fresh else ())
+    for name in sorted(made, key=lambda n: (n not in SHORT, n)):
+        if name in found and not found[name].stale:
+            continue
+        try:
+            found[name] = ensure(cases[name], runs, fresh, show)
+        except StoppedError as error:
+            failed[name] = str(error)
+            found.pop(name, None)
+    found = {name: found[name] for name in sorted(found, key=lambda n: (n not in SHORT, n not in cases, n))}
     wanted = {run.case.record for run in found.values() if run.case.record is not None}
     records = {}
     for name in sorted(wanted | {RECORD, PUBLISHED}):
@@ -92,13 +98,35 @@ def gather(
             first = 0.0 if resource.kind == "simulated" else None  # its zero is the end of its stretched contact
             records[name] = filmed(datasets.load_track(name), resource.conditions, first)
     points = lines(RECORD)
-    return Fig2(found, scores(found, records, points), records, _checks(Path(verification)), failed, points)
+    own = [name for name in found if name not in cases]
+    return Fig2(found, scores(found, records, points), records, checks, failed, points, own)
 
 
-def _checks(path: Path) -> list[Check]:
-    """The solver's verification; none where the benchmarks have not been run."""
+def _kept(cases: dict[str, Case], folder: Path, skip: Collection[str] = ()) -> dict[str, KeptRun]:
+    """All kept runs, of shipped cases and others; raises :class:`InputError` naming everything damaged."""
+    found, defects = {}, []
+    for name, case in cases.items():
+        try:
+            if name not in skip and (run := read_run(case, folder)) is not None:
+                found[name] = run
+        except InputError as error:
+            defects += error.defects
+    try:
+        found |= {run.case.name: run for run in own_runs(folder, cases)}
+    except InputError as error:
+        defects += error.defects
+    if defects:
+        raise InputError(*defects)
+    return found
+
+
+def _checks(given: str | Path | None) -> list[Check]:
+    """The solver's verification; none where no file is named and the benchmarks have not been run."""
+    path = VERIFICATION if given is None else Path(given)
     if not path.is_file():
-        return []
+        if given is None:
+            return []
+        raise InputError(Defect("is no file", str(path)))
     try:
         return TypeAdapter(list[Check]).validate_python(json.loads(path.read_bytes()))
     except (ValidationError, ValueError) as error:
@@ -108,7 +136,7 @@ def _checks(path: Path) -> list[Check]:
 def write(
     folder: str | Path,
     runs: str | Path = FOLDER,
-    verification: str | Path = VERIFICATION,
+    verification: str | Path | None = None,
     full: bool = False,
     fresh: bool = False,
     show: Callable[[str], None] | None = None,

@@ -15,7 +15,7 @@ from restitution.report import fig2 as content
 from restitution.report.fig2_findings import GRIDS, in_words
 from restitution.report.fig2_scores import BOUNCES, reference_apexes
 from restitution.report.fig2_sensitivity import sensitivity
-from restitution.report.fig2_solver import check, numerics, settling
+from restitution.report.fig2_solver import check, missed, numerics, settling
 from restitution.report.page import number, percent, png_image
 from restitution.report.page import render as render_page
 from restitution.stokes import Speed
@@ -47,22 +47,25 @@ def render(
         noise=datasets.load_track(content.RECORD).sigma,
         until=UNTIL,
         bounces=range(1, BOUNCES + 1),
-        findings=in_words(fig2, content.MAIN, content.RECORD, content.SHORT[-1]),
+        findings=in_words(fig2, *content.SHORT, content.RECORD),
         main=_main(fig2, table),
         impacts=_impacts(fig2),
         definitions=DEFINITIONS,
         sensitivity=sensitivity(fig2, table),
         predictions=[_bounce_row(fig2, table, run) for run in fig2.runs.values() if run.case.record is None],
-        other_records=[_bounce_row(fig2, table, run) for run in _of_other_records(fig2)],
+        other_records=_of_other_records(fig2, table),
         settling=settling(fig2, table),
         physics=_physics(off),
         forces=forces.svg,
         numerics=[numerics(run) for run in fig2.runs.values()],
         checks=[check(c) for c in fig2.checks],
+        missed=missed(fig2.checks),
         verification=str(content.VERIFICATION),
         failed=fig2.failed,
         stale=[name for name, run in fig2.runs.items() if run.stale],
         missing=_missing(fig2),
+        own=fig2.own,
+        main_case=content.MAIN,
     )
 
 
@@ -72,7 +75,8 @@ def _main(fig2: Fig2, table: pd.DataFrame) -> list[dict]:
         _record_row(fig2, content.RECORD, "measured"),
         _record_row(fig2, content.PUBLISHED, "published simulation"),
     ]
-    shown = dict.fromkeys((*content.SHORT, *GRIDS))
+    own = [name for name in fig2.own if fig2.runs[name].case.record == content.RECORD]
+    shown = dict.fromkeys((*content.SHORT, *GRIDS, *own))
     rows += [_bounce_row(fig2, table, fig2.runs[name]) for name in shown if name in fig2.runs]
     return rows + [_line_row(table, line) for line in fig2.lines]
 
@@ -82,14 +86,11 @@ def _record_row(fig2: Fig2, name: str, kind: str) -> dict:
     goal = fig2.records[content.RECORD]
     own = name == content.RECORD
     apexes, goals = reference_apexes(name, found), reference_apexes(content.RECORD, goal)
-    far = [
-        r for r in find_impacts(datasets.load_track(name), resource.conditions, Speed.FAR).rows if r["impact"] == 1
-    ]
     return {
         "name": resource.experiment.cite,
         "contact": kind,
         "cells": "",
-        "v": f"{far[0]['impact_speed_m_s']:.3f}" if far else "",
+        "v": _far_speed(name),
         "apexes": [_with_error(apexes, goals, k, 1e3, own) for k in range(BOUNCES)],
         "intervals": [_with_error(found.intervals_s, goal.intervals_s, k, 1e3, own) for k in range(BOUNCES)],
         "rms": "" if own else f"{gap_error_d(found, goal, resource.conditions):.3f}",
@@ -98,11 +99,41 @@ def _record_row(fig2: Fig2, name: str, kind: str) -> dict:
     }
 
 
+def _measured_row(fig2: Fig2, name: str) -> dict:
+    """A record as the row that its runs are compared with; its bounces as far as there are any."""
+    found = fig2.records.get(name)
+    apexes = np.empty(0) if found is None else reference_apexes(name, found)
+    pace = np.empty(0) if found is None else found.intervals_s
+    return {
+        "name": datasets.resource(name).experiment.cite,
+        "contact": "measured",
+        "cells": "",
+        "v": _far_speed(name),
+        "apexes": [_with_error(apexes, apexes, k, 1e3, True) for k in range(BOUNCES)],
+        "intervals": [_with_error(pace, pace, k, 1e3, True) for k in range(BOUNCES)],
+        "rms": "",
+        "made": name,
+        "stale": False,
+    }
+
+
+def _far_speed(name: str) -> str:
+    """Speed of the first approach of a record outside the film."""
+    track, conditions = datasets.load_track(name), datasets.resource(name).conditions
+    rows = [r for r in find_impacts(track, conditions, Speed.FAR).rows if r["impact"] == 1]
+    return f"{rows[0]['impact_speed_m_s']:.3f}" if rows else ""
+
+
 def _with_error(values: np.ndarray, goals: np.ndarray, k: int, scale: float, own: bool) -> str:
     if k >= len(values):
         return ""
     error = "" if own or k >= len(goals) else f" ({percent(values[k] / goals[k] - 1)})"
-    return f"{values[k] * scale:.3g}{error}" if scale * values[k] < 1 else f"{values[k] * scale:.2f}{error}"
+    return f"{_three_digits(values[k] * scale)}{error}"
+
+
+def _three_digits(value: float) -> str:
+    """Two decimals, below 1 three digits."""
+    return f"{value:#.3g}" if value < 1 else f"{value:.2f}"
 
 
 def _bounce_row(fig2: Fig2, table: pd.DataFrame, run: KeptRun) -> dict:
@@ -123,7 +154,7 @@ def _scored(row: pd.Series, name: str) -> dict:
         found = []
         for k in range(1, BOUNCES + 1):
             value, error = row[f"{what}_{k}_{unit}"], row[f"{what}_{k}_error"]
-            shown = "" if math.isnan(value) else f"{value * 1e3:.3g}" if value < 1e-3 else f"{value * 1e3:.2f}"
+            shown = "" if math.isnan(value) else _three_digits(value * 1e3)
             found.append(shown + (f" ({percent(error)})" if not math.isnan(error) else ""))
         return found
 
@@ -154,10 +185,16 @@ def _physics(off: pd.DataFrame) -> list[dict]:
     return rows
 
 
-def _of_other_records(fig2: Fig2) -> list[KeptRun]:
-    return [
+def _of_other_records(fig2: Fig2, table: pd.DataFrame) -> list[dict]:
+    """Each record followed by its runs."""
+    runs = [
         r for r in fig2.runs.values() if r.case.record not in (None, content.RECORD) and r.case.contact is not None
     ]
+    rows = []
+    for record in dict.fromkeys(run.case.record for run in runs):
+        rows.append(_measured_row(fig2, record))
+        rows += [_bounce_row(fig2, table, run) for run in runs if run.case.record == record]
+    return rows
 
 
 def _impacts(fig2: Fig2) -> list[dict]:

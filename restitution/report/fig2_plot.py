@@ -30,8 +30,8 @@ LINES = {
     "gondret_st152_10_soft": ("simulation, contact (c): soft, stretched", "#0072B2", (0, (1, 1.2))),
 }
 POINTS = {
-    DRY: ("point particle: $e_{dry}$, cavitating film", "#009E73", (0, (3, 1, 1, 1))),
-    RATIONAL: ("point particle: Eq. (4), rational", "#CC79A7", (0, (7, 1.5, 1, 1.5))),
+    DRY: ("point particle: $e_{dry}$, cavitating film", "#009E73", (0, (1, 3))),
+    RATIONAL: ("point particle: Eq. (4), rational", "#CC79A7", (0, (9, 2, 1, 2, 1, 2))),
     FITTED: ("point particle: Eq. (4), K by all positions, wake; 95 %", "#555555", (0, (2, 1))),
 }
 PUBLISHED_LINE = {"color": "#888888", "lw": 1.0, "marker": "D", "ms": 3, "mfc": "#cccccc", "mec": "#888888"}
@@ -191,12 +191,15 @@ def draw_flow(fig2: Fig2) -> Drawing | None:
             drawn = ax.pcolormesh(
                 f.x_d, f.z_d, f.vorticity.T * scale, cmap="RdBu_r", vmin=-5, vmax=5, shading="gouraud"
             )
-            ax.add_patch(Circle((0, 0.5 + f.gap_d), 0.5, fc="#dddddd", ec="black", lw=1))
+            ax.contour(  # told apart without colour by the dashes, matplotlib's for negative levels
+                f.x_d, f.z_d, f.vorticity.T * scale, levels=(-4, -2, -1, 1, 2, 4), colors="black", linewidths=0.5
+            )
+            ax.add_patch(Circle((0, 0.5 + f.gap_d), 0.5, fc="#dddddd", ec="black", lw=1, zorder=3))
             ax.axhline(0, color="black", lw=3)
             ax.set_aspect("equal")
             ax.set_ylim(-0.05, 3.0)
             ax.set_xlabel("$x/d$  [-]")
             ax.set_title(f"{moment} the impact: $t$ = {f.time_s * 1e3:.1f} ms, $h/d$ = {f.gap_d:.2f}", fontsize=10)
         axes[0].set_ylabel("height  $z/d$  [-]")
-        figure.colorbar(drawn, ax=axes, label=r"vorticity  $\omega_y d/u_{in}$  [-]", shrink=0.8)
+        figure.colorbar(drawn, ax=axes, label=r"vorticity  $\omega_y d/u_{in}$  [-]", shrink=0.8, extend="both")
         return save(figure)

@@ -43,6 +43,10 @@ SENSITIVITY = (
         ("gondret_st152_10", "gondret_st152_10_calibrated", "gondret_st152_10_suction"),
     ),
     (
+        "tension at 16 cells: 1 atm, calibrated at St 27",
+        ("gondret_st152_16", "gondret_st152_16_calibrated"),
+    ),
+    (
         "added mass that the wall pays for: the lattice's, potential flow's",
         ("gondret_st152_10", "gondret_st152_10_potential"),
     ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from restitution.report.page import percent
@@ -48,6 +49,20 @@ def numerics(run: KeptRun) -> dict:
     }  # fmt: skip
 
 
+def missed(checks: list[Check]) -> str:
+    """How many figures with an aim miss it, and which kinds, in words."""
+    aimed = [c for c in checks if c.target is not None]
+    kinds = Counter(c.name for c in aimed if _misses(c))
+    if not kinds:
+        return f"All {len(aimed)} figures with an aim meet it."
+    each = ", ".join(f"{name} ({n} of {sum(c.name == name for c in aimed)})" for name, n in kinds.items())
+    return f"Of {len(aimed)} figures with an aim {sum(kinds.values())} miss it: {each}."
+
+
+def _misses(c: Check) -> bool:
+    return c.target is not None and abs(c.error) > c.target
+
+
 def check(c: Check) -> dict:
     # Against 0 the error is the figure itself, which stands there already.
     return {
@@ -57,6 +72,6 @@ def check(c: Check) -> dict:
         "reference": f"{c.reference:.4g}" if c.reference else "",
         "error": percent(c.error, ".2f"),
         "target": "" if c.target is None else f"{c.target * 100:g} %",
-        "missed": c.target is not None and abs(c.error) > c.target,
+        "missed": _misses(c),
         "source": c.source,
     }

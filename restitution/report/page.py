@@ -45,5 +45,8 @@ def number(value: float, digits: int) -> str:
 
 
 def percent(value: float, digits: str = ".1f") -> str:
-    """A relative error in per cent, with its sign; nothing for NaN."""
-    return "" if math.isnan(value) else f"{value * 100:+{digits}} %"
+    """A relative error in per cent, with its sign; nothing for NaN, no sign for what is rounded to nought."""
+    if math.isnan(value):
+        return ""
+    shown = f"{value * 100:+{digits}}\N{NO-BREAK SPACE}%".replace("-", "\N{MINUS SIGN}")
+    return shown if any(c in "123456789" for c in shown) else shown[1:]  # no sign of nought
