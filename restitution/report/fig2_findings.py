@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from restitution.report.fig2 import Fig2
 
 GRIDS = ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20")
-SMALL_GRIDS = (*(f"{name}_small" for name in GRIDS), "gondret_st152_20_small_slow")
+SMALL_GRIDS = tuple(f"{name}_small" for name in GRIDS)
 
 
 def in_words(fig2: Fig2, imposed: str, main: str, soft: str, record: str) -> list[str]:

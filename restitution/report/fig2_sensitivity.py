@@ -31,10 +31,6 @@ SENSITIVITY = (
     ("width of the box", ("gondret_st152_10", "gondret_st152_10_narrow", "gondret_st152_10_wide")),
     ("lattice speed", ("gondret_st152_10", "gondret_st152_10_fast", "gondret_st152_10_slow")),
     (
-        "lattice speed at 20 cells, in the smaller box",
-        ("gondret_st152_20_small", "gondret_st152_20_small_slow"),
-    ),
-    (
         "film: what the grid lacks, or Eq. (3) from 1 or 2 cells on",
         ("gondret_st152_10", "gondret_st152_10_cutoff1", "gondret_st152_10_cutoff2"),
     ),
