@@ -81,6 +81,8 @@ def gather(
     cases = {name: case_files.read_case(name) for name in case_files.names()}
     made = set(cases) if full else set(SHORT)
     found = _kept(cases, runs, skip=made if fresh else ())
+    if show is not None and not found and not fresh:
+        show(f"no results are kept in {runs}: the runs of the figure are made now")
     for name in sorted(made, key=lambda n: (n not in SHORT, n)):
         if name in found and not found[name].stale:
             continue
