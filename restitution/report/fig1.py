@@ -103,6 +103,10 @@ def _everything() -> tuple:
     return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements, whole
 
 
+_CELLS = 10
+"""Cells a diameter of the simulated series, the same for all its points."""
+
+
 def predicted(folder: Path) -> dict[str, KeptRun]:
     """Kept runs at ten cells in which no rebound is an input: dry restitution, nothing tuned."""
     from restitution import case_files
@@ -112,7 +116,8 @@ def predicted(folder: Path) -> dict[str, KeptRun]:
     for name in case_files.names():
         case = case_files.read_case(name)
         varied = name.endswith("_calibrated") or (name.startswith("gondret_st152") and name != "gondret_st152_10")
-        if case.contact is not None and case.contact.mode == "dry" and not varied:
+        same_grid = case.numerics is not None and case.numerics.cells_per_diameter == _CELLS
+        if same_grid and case.contact is not None and case.contact.mode == "dry" and not varied:
             run = read_run(case, folder)
             if run is not None and len(run.impacts):
                 found[name] = run

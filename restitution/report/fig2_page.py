@@ -53,6 +53,9 @@ def render(
         definitions=DEFINITIONS,
         sensitivity=sensitivity(fig2, table),
         predictions=[_bounce_row(fig2, table, run) for run in fig2.runs.values() if run.case.record is None],
+        prediction_notes={
+            name: r.case.note for name, r in fig2.runs.items() if r.case.record is None and r.case.note
+        },
         other_records=_of_other_records(fig2, table),
         settling=settling(fig2, table),
         physics=_physics(off),
