@@ -7,7 +7,7 @@ After a jump of the velocity by u the fluid has taken up, in Stokes flow without
 
 added mass, history and steady drag, m_f being the displaced mass. It is what a rebound asks of the lattice: right
 after it the layer that has been set moving is thinner than a cell. Viscosity and times are those of the rebound at
-St 152 and Re 164. Means over d/c_s, for sound goes to and fro; the first columns still ring from it.
+St 152 and Re 164. Means over d/c_s, for sound goes to and fro; later it comes back from the periodic images.
 
     python -m benchmarks.impulsive_start
 """

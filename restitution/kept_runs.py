@@ -159,7 +159,7 @@ def _result(place: Path, case: Case, about: About, stale: bool) -> KeptRun:
 def _table(path: Path, schema: TableSchema, may_be_empty: bool) -> pd.DataFrame:
     import pandas as pd
 
-    if may_be_empty and len(path.read_text("utf-8").splitlines()) < 2:
+    if may_be_empty and path.is_file() and len(path.read_bytes().splitlines()) < 2:
         return pd.DataFrame(columns=list(schema.columns))
     return read_table(path, schema)
 

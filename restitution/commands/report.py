@@ -78,7 +78,9 @@ def run_fig2(args: argparse.Namespace) -> int:
     for option in ("out", "runs"):  # before runs are made that take minutes
         if not getattr(args, option):
             raise InputError(Defect("names no folder", field=f"--{option}"))
-        check_folder(getattr(args, option))
+    check_folder(args.out)
+    if not Path(args.runs).is_dir():  # one that is there may be read-only: nothing need be made
+        check_folder(args.runs)
 
     def say(text: str) -> None:
         print(text, file=sys.stderr)  # noqa: T201

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 SPEED = Speed.CONTACT
 SIMULATED_BY_ABSTRACT = "gondret2002_st152"
 """The record whose bounces the simulation of the source abstract used ("solid squares" of its Fig. 1)."""
+_CELLS = 10
+"""Cells a diameter of the simulated series, the same for all its points."""
 EQ4_READINGS = ("eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative")
 OTHERS = ("legendre_2005", "barnocky_davis_1988", "two_way_lubrication", "ehd_composite")
 
@@ -101,10 +103,6 @@ def _everything() -> tuple:
     judgements = judge(every, conditions, (*EQ4_READINGS, *OTHERS))
     whole = fig1_trajectories.gather([r.name for r in resources if r.kind == "measured"])
     return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements, whole
-
-
-_CELLS = 10
-"""Cells a diameter of the simulated series, the same for all its points."""
 
 
 def predicted(folder: Path) -> dict[str, KeptRun]:

@@ -111,7 +111,7 @@ def _measured_row(fig2: Fig2, name: str) -> dict:
         "name": datasets.resource(name).experiment.cite,
         "contact": "measured",
         "cells": "",
-        "v": _far_speed(name),
+        "v": "" if found is None else _far_speed(name),
         "apexes": [_with_error(apexes, apexes, k, 1e3, True) for k in range(BOUNCES)],
         "intervals": [_with_error(pace, pace, k, 1e3, True) for k in range(BOUNCES)],
         "rms": "",

@@ -128,7 +128,8 @@ def draw_records(fig2: Fig2) -> Drawing | None:
     runs = [r for r in fig2.runs.values() if r.case.record not in (None, RECORD) and not r.case.prediction]
     by_record: dict[str, list[KeptRun]] = {}
     for run in runs:
-        by_record.setdefault(run.case.record, []).append(run)
+        if datasets.resource(run.case.record).table == "trajectory":  # not one of velocities
+            by_record.setdefault(run.case.record, []).append(run)
     if not by_record:
         return None
     columns = 3

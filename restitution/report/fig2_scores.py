@@ -137,7 +137,7 @@ def _settling(run: KeptRun) -> dict[str, float]:
     peak = float(-run.velocity.velocity_m_s.min()) / terminal
     goal = 1.0 if run.case.numerics.sides == "periodic" else resource.quoted["maximum_over_terminal_speed"]
     found = {"peak_over_terminal": peak, "peak_over_terminal_error": peak / goal - 1}
-    if run.case.prediction:
+    if run.case.prediction or resource.table != "trajectory":
         return empty | found
     track = datasets.load_track(run.case.record)
     use = track.time_s <= run.trajectory.time_s.iloc[-1]
