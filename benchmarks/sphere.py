@@ -10,10 +10,8 @@ hour of one core.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +25,8 @@ from lbm.wall_motion import FRACTION
 from restitution import datasets
 from restitution.files import write_whole
 from restitution.laws.brenner_1961 import Brenner1961
+from restitution.report.fig2_checks import Check, read_checks, text_of
+from restitution.runs import physics
 
 ARRAYS = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292}
 """K over the solid fraction: Zick & Homsy, J. Fluid Mech. 115 (1982) 13, simple cubic array."""
@@ -36,25 +36,14 @@ _BRENNER = "Brenner 1961, exact series"
 _EXACT = "by definition"
 
 
-@dataclass(frozen=True)
-class Row:
-    """One figure beside its reference; ``error`` relative, or absolute where the reference is 0."""
-
-    name: str
-    case: str
-    measured: float
-    reference: float
-    error: float
-    target: float | None
-    source: str
-
-
-def _row(name, case, measured, reference, target, source) -> Row:
+def _row(name, case, measured, reference, target, source) -> Check:
     error = measured / reference - 1 if reference else measured
-    return Row(name, case, float(measured), float(reference), float(error), target, source)
+    return Check(
+        name=name, case=case, measured=measured, reference=reference, error=error, target=target, source=source
+    )
 
 
-def arrays(scheme: str = "linear") -> Iterator[Row]:
+def arrays(scheme: str = "linear") -> Iterator[Check]:
     """Drag in a periodic array at d = 8 and 16, mean over places in the cell, and the order between them."""
     for fraction, K in ARRAYS.items():
         errors = {}
@@ -69,12 +58,14 @@ def arrays(scheme: str = "linear") -> Iterator[Row]:
             yield _row("array drag, spread over places", case, np.ptp(drag) / K, 0, None, _EXACT)
         coarse, fine = errors
         order = math.log(abs(errors[coarse] / errors[fine])) / math.log(fine / coarse)
-        yield Row(
-            "array drag, order", f"{scheme}, phi {fraction}", order, 2, order - 2, None, "second-order scheme"
+        case = f"{scheme}, phi {fraction}"
+        source = "second-order scheme"
+        yield Check(
+            name="array drag, order", case=case, measured=order, reference=2, error=order - 2, source=source
         )
 
 
-def wall(diameter: float, scheme: str = "linear", **box) -> Iterator[Row]:
+def wall(diameter: float, scheme: str = "linear", **box) -> Iterator[Check]:
     """Resistance towards a wall: lattice alone over the gap, then with a film for each cut-off and form."""
     made = flows.approach(diameter, scheme=scheme, dtype="float32", speed=2e-3, start=2.5 / diameter, **box)
     exact = Brenner1961()
@@ -103,7 +94,7 @@ def wall(diameter: float, scheme: str = "linear", **box) -> Iterator[Row]:
         )
 
 
-def noise(scheme: str = "linear", viscosities=(0.1, 0.02, 0.003)) -> Iterator[Row]:
+def noise(scheme: str = "linear", viscosities=(0.1, 0.02, 0.003)) -> Iterator[Check]:
     """Force noise of a sphere that crosses the grid."""
     for viscosity in viscosities:
         for name, direction in (("straight", (1, 0, 0)), ("oblique", (1, 0.62, 0.37))):
@@ -113,7 +104,7 @@ def noise(scheme: str = "linear", viscosities=(0.1, 0.02, 0.003)) -> Iterator[Ro
             yield _row("lateral force", case, found.lateral, 0, 0.02, _EXACT)
 
 
-def frames() -> Iterator[Row]:
+def frames() -> Iterator[Check]:
     """Drag in moving frames over that in the frame of the fluid."""
     still = flows.drag_in_frame(10, (0.04, 0, 0), (0, 0, 0))
     for case, sphere, fluid in (
@@ -125,7 +116,7 @@ def frames() -> Iterator[Row]:
         yield _row("frames", f"d 10, Re 8, {case}", drag, still, 0.01, "frame of the fluid")
 
 
-def shear() -> Iterator[Row]:
+def shear() -> Iterator[Check]:
     """Rotation rate and torque in shear; the wider box tells what is the box's."""
     for width, height in ((5, 6), (7, 9)):
         found = flows.shear(10, width=width, height=height)
@@ -138,7 +129,7 @@ SETTLING = {"e1": (0.015, 4.2), "e3": (0.03, 1.75)}
 """Lattice speed that stands for the terminal speed, and duration in s."""
 
 
-def settling(case: str, diameter: float) -> Iterator[Row]:
+def settling(case: str, diameter: float) -> Iterator[Check]:
     """Peak speed and trajectory of ten Cate's sphere."""
     record = datasets.resource(f"tencate2002_{case}_gap")
     terminal, ratio = record.quoted["terminal_speed_m_s"], record.quoted["maximum_over_terminal_speed"]
@@ -155,7 +146,7 @@ def settling(case: str, diameter: float) -> Iterator[Row]:
     yield _row("settling, trajectory mean over the drop", about, difference.mean() / drop, 0, None, "likewise")
 
 
-def contact() -> Iterator[Row]:
+def contact() -> Iterator[Check]:
     """What the sub-steps and the place in the cell change in a rebound at St = 30."""
     gap, velocity = flows.rebound()
     e = _restitution(gap, velocity)
@@ -190,7 +181,7 @@ def _apex(gap: np.ndarray, velocity: np.ndarray) -> float:
     return float(gap[np.argmin(gap) :].max())
 
 
-GROUPS: dict[str, Callable[[], Iterator[Row]]] = {
+GROUPS: dict[str, Callable[[], Iterator[Check]]] = {
     "arrays": arrays,
     "arrays-central-linear": lambda: arrays("central-linear"),
     "wall-10": lambda: wall(10, width=4, height=3),
@@ -220,25 +211,25 @@ def main() -> None:
     parser.add_argument("--json", type=Path, default=Path("benchmarks/sphere.json"))
     arguments = parser.parse_args()
     console = Console(width=150)
-    known = json.loads(arguments.json.read_text()) if arguments.json.exists() else []
+    known = read_checks(arguments.json) if arguments.json.exists() else []
     wanted = arguments.only or list(GROUPS)
     if arguments.fresh:
-        known = [row for row in known if row["group"] not in wanted]
-    missing = [name for name in wanted if name not in {row["group"] for row in known}]
+        known = [check for check in known if check.group not in wanted]
+    missing = [name for name in wanted if name not in {check.group for check in known}]
+    version = physics.agreed_version()
     for name in track(missing, "measuring", console=console):
-        known += [{"group": name, **asdict(row)} for row in GROUPS[name]()]
-        write_whole(arguments.json, json.dumps(known, indent=1) + "\n")
-    _show([row for row in known if row["group"] in wanted], console)
+        known += [check.model_copy(update={"group": name, "physics": version}) for check in GROUPS[name]()]
+        write_whole(arguments.json, text_of(known))
+    _show([check for check in known if check.group in wanted], console)
 
 
-def _show(rows: list[dict], console: Console) -> None:
+def _show(checks: list[Check], console: Console) -> None:
     table = Table("what", "case", "measured", "reference", "error", "target", "source")
-    for row in rows:
-        target = row["target"]
-        held = "" if target is None or abs(row["error"]) <= target else "[red]"
+    for c in checks:
+        mark = "[red]" if c.missed else ""
         table.add_row(
-            row["name"], row["case"], f"{row['measured']:.4g}", f"{row['reference']:.4g}",
-            f"{held}{row['error']:+.2%}", "" if target is None else f"{target:.1%}", row["source"],
+            c.name, c.case, f"{c.measured:.4g}", f"{c.reference:.4g}", f"{mark}{c.error:+.2%}",
+            "" if c.target is None else f"{c.target:.1%}", c.source,
         )  # fmt: skip
     console.print(table)
 

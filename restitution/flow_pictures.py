@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 MOMENTS = ("before", "at", "after")
 BEFORE_D, AFTER_D = 0.5, 1.0
 """Gaps in diameters: on the way in, and on the way out after the first impact."""
-_HALF_WIDTH_D, _HEIGHT_D = 1.5, 4.0
+HALF_WIDTH_D, HEIGHT_D = 1.5, 4.0
+"""What a picture shows, in diameters from the axis and above the wall."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class FlowFrames:
         curl = run.vorticity()
         x = (np.arange(curl.shape[0]) + 0.5 - curl.shape[0] / 2) / cells
         z = (np.arange(curl.shape[1]) + 0.5) / cells
-        near_x, near_z = np.abs(x) <= _HALF_WIDTH_D, z <= _HEIGHT_D
+        near_x, near_z = np.abs(x) <= HALF_WIDTH_D, z <= HEIGHT_D
         if run.contacts:
             time = run.time_s - run.contacts[0].time_s
         else:

@@ -1,23 +1,26 @@
-"""Results of simulations, kept as small tables under a key; an unchanged run is not repeated.
+"""Results of simulations, kept as small tables; a run that would come out the same is not repeated.
 
 Each lies in a folder of its own, ``reports/runs/CASE/``, with the files that :mod:`restitution.simulate` writes.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from restitution import datasets
 from restitution.case import Case
 from restitution.errors import Defect, InputError
 from restitution.flow_pictures import FlowFrames
-from restitution.run_key import run_key
+from restitution.runs import physics
+from restitution.runs.filmed import filmed, simulated_impacts
+from restitution.runs.program import program_hash
+from restitution.runs.record import RESOLVED, RunRecord, read_record
+from restitution.runs.told import departures, told
 from restitution.simulate import KEPT, can_resume, simulate
 from restitution.tables import read_table
 
@@ -28,61 +31,34 @@ if TYPE_CHECKING:
     from restitution.table_schema import TableSchema
 
 FOLDER = Path("reports/runs")
-RESOLVED = "resolved"
-"""The model of a run whose ``run.json`` names none."""
 _MEND = "delete its folder, and the report makes the run again, or leaves it out if it is not one of its figure"
-
-
-class SolverContact(BaseModel):
-    """One contact as the solver had it, time from the first."""
-
-    time_s: float
-    speed_in_m_s: float
-    speed_out_m_s: float
-
-
-class About(BaseModel):
-    """``run.json``."""
-
-    model: str = RESOLVED
-    key: str
-    case_hash: str
-    code_hash: str
-    data_hash: str
-    case: str
-    date: str
-    finished: bool
-    seconds: float
-    threads: int
-    steps: int
-    shape: tuple[int, int, int]
-    step_s: float
-    numbers: dict[str, float]
-    contacts: tuple[SolverContact, ...]
-    notes: tuple[str, ...] = ()
-    case_as_run: dict[str, Any]
 
 
 @dataclass(frozen=True)
 class KeptRun:
-    """A case and its kept result. ``stale``: made by another version of case, code or data.
+    """A case and its kept result; it is stale where what is ``changed`` since would give another one.
 
     ``case`` is the case as it was run, which for a stale result need not be the present one.
     """
 
     case: Case
-    about: About
+    about: RunRecord
     trajectory: pd.DataFrame
     velocity: pd.DataFrame
     impacts: pd.DataFrame
     flow: FlowFrames
-    stale: bool
+    changed: tuple[str, ...] = ()
+
+    @property
+    def stale(self) -> bool:
+        """Whether the run would come out otherwise now."""
+        return bool(self.changed)
 
     @property
     def made_with(self) -> str:
-        """Date and code hash, and whether the code is no longer that."""
+        """Date and code hash, and what has changed since."""
         return f"{self.about.date}, code {self.about.code_hash}" + (
-            " (code or case changed since)" if self.stale else ""
+            f" ({', '.join(self.changed)} changed since)" if self.changed else ""
         )
 
 
@@ -92,12 +68,11 @@ def read_run(case: Case, folder: Path = FOLDER) -> KeptRun | None:
     None where there is none, or one of a case in an older form than can be read.
     """
     place = folder / case.name
-    if not (place / "run.json").is_file():
+    about = read_record(place, _MEND)
+    if about is None:
         return None
-    about = _about(place)
-    if about.key == run_key(case).key:
-        return _result(place, case, about, stale=False)
-    return _as_it_was_run(place, about)
+    changed = _changed(about, case)
+    return _result(place, case, about) if not changed else _as_it_was_run(place, about, changed)
 
 
 def own_runs(folder: Path, known: Collection[str]) -> list[KeptRun]:
@@ -106,41 +81,43 @@ def own_runs(folder: Path, known: Collection[str]) -> list[KeptRun]:
     Those of the point-particle model, which has no grid, are left out. Raises :class:`InputError` naming all
     damaged ones.
     """
-    found, defects = [], []
+    runs, defects = [], []
     for place in sorted(folder.iterdir()) if folder.is_dir() else ():
-        if place.name in known or not (place / "run.json").is_file():
+        if place.name in known:
             continue
         try:
-            about = _about(place)
-            found.append(_as_it_was_run(place, about) if about.model == RESOLVED else None)
+            about = read_record(place, _MEND)
+            if about is not None and about.model == RESOLVED:
+                runs.append(_as_it_was_run(place, about))
         except InputError as error:
             defects += error.defects
     if defects:
         raise InputError(*defects)
-    return [run for run in found if run is not None]
+    return [run for run in runs if run is not None]
 
 
-def _about(place: Path) -> About:
-    path = place / "run.json"
-    try:
-        about = About.model_validate(json.loads(path.read_bytes()))
-    except (ValidationError, ValueError):
-        raise InputError(Defect(f"is damaged: {_MEND}", str(path))) from None
-    if not about.finished:
-        raise InputError(Defect(f"is of a run that did not finish: {_MEND}", str(path)))
-    return about
+def _changed(about: RunRecord, case: Case) -> tuple[str, ...]:
+    """What of case and program would give another run now than the one that is kept.
+
+    A run is of the present program if its text made it, or if the program then and the program now both agree with
+    the probes of one version.
+    """
+    case_changed = bool(departures(about.told, told(case)))
+    same_text = about.code_hash == program_hash()
+    program_changed = not same_text and (about.physics is None or about.physics != physics.agreed_version())
+    return ("case",) * case_changed + ("program",) * program_changed
 
 
-def _as_it_was_run(place: Path, about: About) -> KeptRun | None:
+def _as_it_was_run(place: Path, about: RunRecord, changed: tuple[str, ...] | None = None) -> KeptRun | None:
     try:
         case = Case.model_validate(about.case_as_run)
     except ValidationError:
         return None
-    stale = about.key != run_key(case).key
-    return _result(place, case.model_copy(update={"name": place.name}), about, stale)
+    changed = _changed(about, case) if changed is None else changed
+    return _result(place, case.model_copy(update={"name": place.name}), about, changed)
 
 
-def _result(place: Path, case: Case, about: About, stale: bool) -> KeptRun:
+def _result(place: Path, case: Case, about: RunRecord, changed: tuple[str, ...] = ()) -> KeptRun:
     tables, defects = {}, []
     for name, table in (("trajectory", "trajectory"), ("velocity", "settling"), ("impacts", "impact")):
         try:
@@ -151,9 +128,11 @@ def _result(place: Path, case: Case, about: About, stale: bool) -> KeptRun:
             defects += error.defects
     if defects:
         raise InputError(*defects, Defect(f"has damaged tables: {_MEND}", str(place)))
+    if not physics.impacts_agree() or (about.filmed and departures(about.filmed, filmed(case))):
+        tables["impacts"] = simulated_impacts(tables["trajectory"], case)[0]
     flow = FlowFrames()
     flow.read(place / "flow.npz")
-    return KeptRun(case, about, **tables, flow=flow, stale=stale)
+    return KeptRun(case, about, **tables, flow=flow, changed=changed)
 
 
 def _table(path: Path, schema: TableSchema, may_be_empty: bool) -> pd.DataFrame:
@@ -164,7 +143,7 @@ def _table(path: Path, schema: TableSchema, may_be_empty: bool) -> pd.DataFrame:
     return read_table(path, schema)
 
 
-def _check_end(path: Path, time: np.ndarray, about: About) -> None:
+def _check_end(path: Path, time: np.ndarray, about: RunRecord) -> None:
     """A table that was cut is well formed; it ends before the run did."""
     end = time[0] + about.steps * about.step_s
     if len(time) > 1 and time[-1] < end - 2 * (time[1] - time[0]):
@@ -174,7 +153,7 @@ def _check_end(path: Path, time: np.ndarray, about: About) -> None:
 def ensure(
     case: Case, folder: Path = FOLDER, fresh: bool = False, show: Callable[[str], None] | None = None
 ) -> KeptRun:
-    """The kept result of a case, run first where there is none of its key or ``fresh`` asks for it.
+    """The kept result of a case, run first where there is none that is current or ``fresh`` asks for it.
 
     A run that was stopped is continued. Errors as in :func:`restitution.simulate.simulate`.
     """

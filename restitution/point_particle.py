@@ -26,12 +26,9 @@ The fluid has no end but the wall.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 import time
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,9 +40,11 @@ from restitution.case import Case
 from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.measured_bounces import measured_restitution
-from restitution.run_key import RunKey, program, run_key
-from restitution.simulate import csv, simulated_impacts
+from restitution.runs.filmed import filmed, simulated_impacts
+from restitution.runs.program import program_hash
+from restitution.runs.record import POINT_PARTICLE, RunRecord, SolverContact
 from restitution.stokes import StokesNumber
+from restitution.tables import csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,7 +58,6 @@ _FIELDS = {
     "release.gap": "release.gap_d", "end": "run.duration", "rebound": "contact.law",
     "sphere.density / fluid.density": "sphere.density",
 }  # fmt: skip
-_HERE = Path(__file__).parent
 
 
 @dataclass(frozen=True)
@@ -172,43 +170,27 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
     table = prediction.table()
     trajectory, velocity = table[["time_s", "gap_m"]], table[["time_s", "velocity_m_s"]]
     impacts, notes = simulated_impacts(trajectory, case)
-    about = {
-        **key(case).stated(),
-        "model": "point particle",
-        "case": case.name,
-        "title": case.title,
-        "date": time.strftime("%Y-%m-%d", time.gmtime()),
-        "finished": True,
-        "seconds": round(seconds, 3),
-        "threads": 1,
-        "steps": len(path.time_s) - 1,
-        "shape": [0, 0, 0],  # no grid
-        "step_s": _g(np.ptp(path.time_s) / (len(path.time_s) - 1)),  # their mean
-        "numbers": {name: _g(value) for name, value in _numbers(prediction).items()},
-        "closures": path.closures.describe(),
-        "contacts": prediction.contacts,
-        "notes": _not_used(case) + notes,
-        "case_as_run": case.model_dump(mode="json", exclude_none=True),
-    }
-    contents = (csv(trajectory), csv(velocity), csv(impacts), json.dumps(about, indent=1) + "\n")
+    record = RunRecord(
+        model=POINT_PARTICLE,
+        case=case.name,
+        title=case.title,
+        date=time.strftime("%Y-%m-%d", time.gmtime()),
+        finished=True,
+        seconds=round(seconds, 3),
+        threads=1,
+        steps=len(path.time_s) - 1,
+        shape=(0, 0, 0),  # no grid
+        step_s=_g(np.ptp(path.time_s) / (len(path.time_s) - 1)),  # their mean
+        numbers={name: _g(value) for name, value in _numbers(prediction).items()},
+        closures=path.closures.describe(),
+        contacts=tuple(SolverContact(**c) for c in prediction.contacts),
+        notes=(*_not_used(case), *notes),
+        code_hash=program_hash(),
+        filmed=filmed(case),
+        case_as_run=case.model_dump(mode="json", exclude_none=True),
+    )
+    contents = (csv(trajectory), csv(velocity), csv(impacts), record.text())
     write_folder(folder, dict(zip(FILES, contents, strict=True)))
-
-
-def key(case: Case) -> RunKey:
-    """The key of a case under this version of the model and of the laws."""
-    return replace(run_key(case), code=code_hash())
-
-
-@cache
-def code_hash() -> str:
-    """Hash of the model, of the laws, and of what lies between them and the tables."""
-    names = ("conditions", "impact_speed", "impacts", "branch", "measured_bounces", "simulate", "stokes", "tracks")
-    files = [*(_HERE / "bounce").glob("*.py"), *(_HERE / "laws").glob("*.py"), _HERE / "point_particle.py"]
-    files += [_HERE / f"{name}.py" for name in names]
-    digest = hashlib.sha256()
-    for path in sorted(files):
-        digest.update(f"{path.parent.name}/{path.name}\n{program(path.read_text('utf-8'))}\0".encode())
-    return digest.hexdigest()[:12]
 
 
 def _numbers(prediction: Prediction) -> dict[str, float]:

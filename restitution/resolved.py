@@ -8,47 +8,28 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import lbm
-from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
-from lbm.film import Film, lost_to_grid
+from lbm import cache
 from lbm.observers import DivergenceGuard, FieldOutput
-from lbm.rates import PRESETS
-from lbm.scales import FlowScales
-from lbm.spheres import Sphere, Spheres
 from restitution.case import Case
 from restitution.errors import Defect, InputError, StoppedError
-from restitution.impact_speed import H_FILM
-from restitution.lattice_closures import Normal, Tangential, normal_force, rebound, tangential_force
+from restitution.runs.record import SolverContact
+from restitution.runs.setup import fall_time, set_up
 
 if TYPE_CHECKING:
     import pandas as pd
 
-OUTPUT_D = 0.04
-"""Way in diameters that the reference speed makes between two rows of a trajectory."""
 _LONGEST = 4.0
 """A run without contact is given up after this many times the fall at the reference speed."""
 _LONGEST_RUN = 100
 _NEAR_D = 0.5
-
-
-@dataclass(frozen=True)
-class SolverContact:
-    """One contact as the solver had it: time in s since the release, speeds in m/s at the wall.
-
-    With the contact mode ``effective`` the speeds are those of the motion outside the film, carried to the wall.
-    """
-
-    time_s: float
-    speed_in_m_s: float
-    speed_out_m_s: float
 
 
 class ResolvedRun:
@@ -64,10 +45,11 @@ class ResolvedRun:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", lbm.OutsideRangeWarning)
             try:
-                self.flow = _scales(case)
-                self.simulation, self.spheres = _set_up(case, self.flow)
+                self.setup = set_up(case)
+                self.simulation, self.spheres = self.setup.build()
             except lbm.InputError as error:
                 raise InputError(Defect(str(error), file or case.name, None, "numerics")) from None
+        self.flow = self.setup.flow
         self.warnings += [str(w.message) for w in caught]
         self.guard = DivergenceGuard()
         self._unguarded = 0
@@ -97,7 +79,11 @@ class ResolvedRun:
         """The contacts so far."""
         speed = self.flow.scales.unit("velocity")
         return [
-            SolverContact(float(i.step) * self.step_s, float(i.speed_in * speed), float(i.speed_out * speed))
+            SolverContact(
+                time_s=float(i.step) * self.step_s,
+                speed_in_m_s=float(i.speed_in * speed),
+                speed_out_m_s=float(i.speed_out * speed),
+            )
             for i in self.spheres.impacts
         ]
 
@@ -107,7 +93,7 @@ class ResolvedRun:
         span, found = self.case.run, self.contacts
         if span.after_contact is None:
             return span.duration or self._longest
-        first = found[0].time_s if found else _fall_time(self.case)
+        first = found[0].time_s if found else fall_time(self.case)
         return min(first + span.after_contact, span.duration or math.inf)
 
     @property
@@ -131,7 +117,7 @@ class ResolvedRun:
 
     @property
     def _longest(self) -> float:
-        return _LONGEST * _fall_time(self.case)
+        return _LONGEST * fall_time(self.case)
 
     def advance(self, observers: tuple = ()) -> None:
         """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed.
@@ -196,10 +182,6 @@ class ResolvedRun:
             table |= {name.format(axis): si(track[letter + axis], quantity) for axis in "xyz"}
         return pd.DataFrame(table)
 
-    def rows_apart(self) -> int:
-        """Steps between two rows of a trajectory."""
-        return max(1, round(OUTPUT_D * self.flow.length / self.flow.speed))
-
     def vorticity(self) -> np.ndarray:
         """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz).
 
@@ -216,6 +198,11 @@ class ResolvedRun:
         return self.flow.scales.si(curl, "frequency")
 
 
+def kernel_folder() -> Path:
+    """Where the compiled kernels of this version of the solver are kept."""
+    return cache.directory()
+
+
 @contextmanager
 def _in_our_words() -> Iterator[None]:
     """The solver's errors as this package's."""
@@ -225,93 +212,3 @@ def _in_our_words() -> Iterator[None]:
         raise InputError(str(error)) from None
     except (lbm.DivergenceError, lbm.OutputError) as error:
         raise StoppedError(str(error)) from None
-
-
-def _scales(case: Case) -> FlowScales:
-    n = case.numerics
-    return FlowScales.from_conditions(
-        length_m=case.sphere.diameter,
-        speed_m_s=case.reference_speed,
-        viscosity_m2_s=case.fluid.viscosity / case.fluid.density,
-        density_kg_m3=case.fluid.density,
-        cells=n.cells_per_diameter,
-        lattice_speed=n.lattice_speed,
-    )
-
-
-def _set_up(case: Case, flow: FlowScales) -> tuple[lbm.Simulation, Spheres]:
-    n, radius = case.numerics, flow.length / 2
-    wide, high = round(n.width_d * flow.length), round(n.height_d * flow.length)
-    density = case.sphere.density / case.fluid.density
-    gravity = flow.scales.lattice(case.gravity, "acceleration")
-    film = _film(case, flow)
-    spheres = Spheres(
-        [Sphere(radius, density, (wide / 2, wide / 2, radius + case.release.gap_d * flow.length))],
-        gravity=(0.0, 0.0, -gravity),
-        film=film,
-        contact=_contact(case, flow, density),
-        drive=_drive(case, flow),
-        interpolation=n.interpolation,
-    )
-    simulation = lbm.Simulation(
-        (wide, wide, high),
-        PRESETS[n.rates](viscosity=flow.viscosity),
-        faces={"x": n.sides, "y": n.sides, "z-": "no-slip", "z+": n.top},
-        dtype=n.precision,
-    )
-    simulation.add(spheres)
-    return simulation, spheres
-
-
-def _drive(case: Case, flow: FlowScales) -> Callable | None:
-    r = case.release
-    if r.kind == "rest":
-        return None
-    down, along = (flow.scales.lattice(v, "velocity") for v in (r.speed, r.along))
-    ramp, free_below = r.ramp / flow.scales.step_s, r.free_below_d * flow.length
-
-    def drive(step: float, gap: float) -> tuple[float, float, float] | None:
-        share = math.expm1(-step / ramp)
-        return None if gap < free_below else (-along * share, 0.0, down * share)
-
-    return drive
-
-
-def _film(case: Case, flow: FlowScales) -> Film | None:
-    black_box = case.contact is not None and case.contact.mode == "effective"
-    if case.floor is None or (black_box and not case.film.tangential):
-        return None
-    return Film(case.film.cut_off, flow.scales.lattice(case.floor, "length"), *film_forces(case, flow))
-
-
-def film_forces(case: Case, flow: FlowScales) -> tuple[Normal | None, Tangential | None]:
-    """What the film does across and along the wall, in lattice units."""
-    r, mu, tension = flow.length / 2, flow.viscosity, case.film.tension
-    floor = flow.scales.lattice(case.floor, "length")
-    tension = None if tension is None else flow.scales.lattice(tension, "pressure")
-    across = normal_force(case.film, r=r, mu=mu, floor=floor, tension=tension, lost=lost_to_grid)
-    return across, tangential_force(case.film, r=r, mu=mu)
-
-
-def _contact(case: Case, flow: FlowScales, density: float) -> Contact | None:
-    c, e = case.contact, case.sphere.e_dry
-    if c is None:
-        return None
-    displaced = math.pi / 6 * flow.length**3
-    carried = displaced * (lattice_added_mass(flow.length) if c.added_mass is None else c.added_mass)
-    if c.mode == "dry":
-        return DryRebound(e, carried)
-    if c.mode != "effective":
-        make = SoftContact.linear if c.mode == "soft_linear" else SoftContact.hertz
-        return make(e, density * displaced + carried, c.duration_steps)
-    free_fall = flow.scales.lattice(case.conditions.free_fall, "acceleration")
-    return FilmRebound(rebound(case, flow.scales.unit("velocity")), H_FILM * flow.length, free_fall)
-
-
-def _fall_time(case: Case) -> float:
-    """Estimate of the time in s to the first contact."""
-    gap, fall = case.release.gap_d * case.sphere.diameter, case.conditions.free_fall
-    speed = case.reference_speed
-    if case.release.kind == "drive":
-        return gap / speed + case.release.ramp
-    return gap / speed + 0.5 * speed / fall

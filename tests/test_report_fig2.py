@@ -12,8 +12,11 @@ from restitution import case_files, datasets
 from restitution.cli import main
 from restitution.flow_pictures import FlowFrames, Frame
 from restitution.report import fig1, fig2, point_particle
-from restitution.run_key import run_key
-from restitution.simulate import csv, simulated_impacts
+from restitution.runs import physics
+from restitution.runs.filmed import simulated_impacts
+from restitution.runs.program import program_hash
+from restitution.runs.told import told
+from restitution.tables import csv
 
 FALL = 8.146
 """Free fall of the 3 mm sphere in oil, m/s2: 9.81 (7800 - 935)/(7800 + 935/2)."""
@@ -31,8 +34,9 @@ def keep(folder, name, e, current=True):
         gap = np.where(here, v * t - FALL / 2 * t**2, gap)
         velocity = np.where(here, v - FALL * t, velocity)
     trajectory = pd.DataFrame({"time_s": time, "gap_m": gap})
-    key = run_key(case).stated() if current else dict.fromkeys(("key", "case_hash", "code_hash", "data_hash"), "0")
-    about = key | {
+    about = {
+        "physics": physics.version() if current else None, "code_hash": program_hash() if current else "0",
+        "told": told(case),
         "case": name, "date": "2001-02-03", "finished": True, "seconds": 1.0, "threads": 1, "steps": 10,
         "shape": [8, 8, 8], "step_s": 1e-5,
         "case_as_run": case.model_dump(mode="json", exclude_none=True),

@@ -12,7 +12,8 @@ from restitution import case_files, datasets, lattice_closures, resolved, simula
 from restitution.cli import main
 from restitution.errors import InputError
 from restitution.kept_runs import ensure, read_run
-from restitution.run_key import program, run_key
+from restitution.runs.key import checkpoint_key
+from restitution.runs.setup import film_forces
 from restitution.tables import check_table
 
 TINY = """
@@ -170,7 +171,7 @@ def film_case(tmp_path, film, sphere=""):
     )
     case = case_files.read_case(path)
     flow = scales(case)
-    return case, flow, resolved.film_forces(case, flow)[0]
+    return case, flow, film_forces(case, flow)[0]
 
 
 @pytest.mark.parametrize("form", ["nguyen_ladd_2002", "brenner_1961_difference", "source_abstract_eq3"])
@@ -228,7 +229,7 @@ def test_a_run_of_other_code_is_stale(run, tmp_path):
     for name in simulate.KEPT:
         (tmp_path / case.name / name).write_bytes((out / name).read_bytes())
     about = json.loads((out / "run.json").read_text())
-    about |= {"key": "0" * 12, "code_hash": "0" * 12}
+    about |= {"physics": None, "code_hash": "0" * 12}
     about["case_as_run"]["numerics"]["cells_per_diameter"] = 7.0
     (tmp_path / case.name / "run.json").write_text(json.dumps(about))
     kept = read_run(case, tmp_path)
@@ -245,26 +246,20 @@ def test_a_damaged_result_is_named(run, tmp_path):
         read_run(case, tmp_path)
 
 
-def test_the_key_follows_the_case_but_not_its_title(tmp_path):
+def test_a_checkpoint_belongs_to_the_very_case_but_not_to_its_title(tmp_path):
     first, renamed, moved = (
         tiny(tmp_path), tiny(tmp_path, 'snapshot_interval = 1.0\n'), tiny(tmp_path, "[sphere]\ne_dry = 0.9\n")
     )  # fmt: skip
-    assert run_key(first.model_copy(update={"title": "else"})) == run_key(first)
-    assert len({run_key(c).key for c in (first, renamed, moved)}) == 3
+    assert checkpoint_key(first.model_copy(update={"title": "else"})) == checkpoint_key(first)
+    assert len({checkpoint_key(c) for c in (first, renamed, moved)}) == 3
 
 
-def test_the_key_follows_what_the_contact_takes():
-    keys = {
-        n: run_key(case_files.read_case(f"gondret_st152_10{n}")) for n in ("", "_legendre", "_eq4", "_measured")
-    }
-    assert len({key.data for key in keys.values()}) == 4
-    assert len({key.code for key in keys.values()}) == 1
+def test_a_checkpoint_belongs_to_what_the_contact_takes():
+    names = ("", "_legendre", "_eq4", "_measured")
+    assert len({checkpoint_key(case_files.read_case(f"gondret_st152_10{n}")) for n in names}) == 4
 
 
-def test_code_is_the_same_program_whatever_is_said_about_it():
-    plain = "def f(x):\n    y = '# no comment'\n    return x + 1\n"
-    said = (
-        '"""About."""\n\n# why\ndef f(x):  # what\n    """Doc."""\n\n    y = \'# no comment\'\n    return x + 1\n'
-    )
-    assert program(said) == program(plain)
-    assert program(plain.replace("+ 1", "+ 2")) != program(plain)
+def test_a_checkpoint_belongs_to_the_text_of_the_program(tmp_path, monkeypatch):
+    before = checkpoint_key(tiny(tmp_path))
+    monkeypatch.setattr("restitution.runs.key.program_hash", lambda: "0" * 12)
+    assert checkpoint_key(tiny(tmp_path)) != before

@@ -142,7 +142,7 @@ def _provenance_of_run(run: KeptRun) -> dict[str, object]:
         "figure": "none",
         "digitised_by": "not digitised",
         "data": f"{run.case.name}/trajectory.csv",
-        "sha256": f"run {run.about.key}, code {run.about.code_hash}",
+        "sha256": f"run of physics {run.about.physics}, code {run.about.code_hash}",
     }
 
 

@@ -7,13 +7,10 @@ of the code that made them.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from restitution import case_files, datasets
 from restitution.bounces import Bounces, filmed
@@ -21,9 +18,10 @@ from restitution.case import Case
 from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder
 from restitution.kept_runs import FOLDER, KeptRun, ensure, own_runs, read_run
+from restitution.report.fig2_checks import Check, read_checks
 from restitution.report.fig2_scores import scores
 from restitution.report.point_particle import PointLine, draw_physics, lines, physics
-from restitution.simulate import csv
+from restitution.tables import csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,21 +32,6 @@ MAIN = "gondret_st152_10"
 SHORT = ("gondret_st152_10_measured", MAIN, "gondret_st152_10_soft")
 """What the figure shows: contact modes (a), (b), (c) at ten cells a diameter."""
 VERIFICATION = Path("benchmarks/sphere.json")
-
-
-class Check(BaseModel):
-    """One figure of the solver against one from outside, as ``benchmarks.sphere`` writes it.
-
-    ``error`` is relative, or absolute where the reference is 0; ``target`` is the magnitude that was aimed at.
-    """
-
-    name: str
-    case: str = ""
-    measured: float
-    reference: float
-    error: float
-    target: float | None = None
-    source: str
 
 
 @dataclass(frozen=True)
@@ -129,10 +112,7 @@ def _checks(given: str | Path | None) -> list[Check]:
         if given is None:
             return []
         raise InputError(Defect("is no file", str(path)))
-    try:
-        return TypeAdapter(list[Check]).validate_python(json.loads(path.read_bytes()))
-    except (ValidationError, ValueError) as error:
-        raise InputError(Defect(f"is no list of checks: {error}".splitlines()[0], str(path))) from None
+    return read_checks(path)
 
 
 def write(

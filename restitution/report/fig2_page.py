@@ -15,7 +15,7 @@ from restitution.report import fig2 as content
 from restitution.report.fig2_findings import GRIDS, in_words
 from restitution.report.fig2_scores import BOUNCES, reference_apexes
 from restitution.report.fig2_sensitivity import sensitivity
-from restitution.report.fig2_solver import check, missed, numerics, settling
+from restitution.report.fig2_solver import check, missed, numerics, older, settling
 from restitution.report.page import number, percent, png_image
 from restitution.report.page import render as render_page
 from restitution.stokes import Speed
@@ -63,6 +63,7 @@ def render(
         numerics=[numerics(run) for run in fig2.runs.values()],
         checks=[check(c) for c in fig2.checks],
         missed=missed(fig2.checks),
+        older=older(fig2.checks),
         verification=str(content.VERIFICATION),
         failed=fig2.failed,
         stale=[name for name, run in fig2.runs.items() if run.stale],

@@ -102,7 +102,7 @@ def _row(run: KeptRun, record: Bounces | None) -> dict[str, object]:
         "threads": run.about.threads,
         "date": run.about.date,
         "code_hash": run.about.code_hash,
-        "key": run.about.key,
+        "physics": run.about.physics,
         "stale": run.stale,
     }
 

@@ -7,12 +7,14 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from restitution.report.page import percent
+from restitution.runs import physics
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from restitution.kept_runs import KeptRun
-    from restitution.report.fig2 import Check, Fig2
+    from restitution.report.fig2 import Fig2
+    from restitution.report.fig2_checks import Check
 
 
 def settling(fig2: Fig2, table: pd.DataFrame) -> list[dict]:
@@ -52,15 +54,18 @@ def numerics(run: KeptRun) -> dict:
 def missed(checks: list[Check]) -> str:
     """How many figures with an aim miss it, and which kinds, in words."""
     aimed = [c for c in checks if c.target is not None]
-    kinds = Counter(c.name for c in aimed if _misses(c))
+    kinds = Counter(c.name for c in aimed if c.missed)
     if not kinds:
         return f"All {len(aimed)} figures with an aim meet it."
     each = ", ".join(f"{name} ({n} of {sum(c.name == name for c in aimed)})" for name, n in kinds.items())
     return f"Of {len(aimed)} figures with an aim {sum(kinds.values())} miss it: {each}."
 
 
-def _misses(c: Check) -> bool:
-    return c.target is not None and abs(c.error) > c.target
+def older(checks: list[Check]) -> str:
+    """What is to be said of figures that another version of the program gave; nothing where there are none."""
+    now = physics.agreed_version()
+    old = sum(c.physics is None or c.physics != now for c in checks)
+    return f"{old} of these figures were measured with another version of the program." if old else ""
 
 
 def check(c: Check) -> dict:
@@ -72,6 +77,6 @@ def check(c: Check) -> dict:
         "reference": f"{c.reference:.4g}" if c.reference else "",
         "error": percent(c.error, ".2f"),
         "target": "" if c.target is None else f"{c.target * 100:g} %",
-        "missed": _misses(c),
+        "missed": c.missed,
         "source": c.source,
     }

@@ -1,0 +1,74 @@
+"""Impacts of a simulated trajectory, taken as the record's camera would have taken it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from restitution import datasets
+from restitution.case import Case
+from restitution.impacts import find_impacts
+from restitution.stokes import Speed
+from restitution.tracks import MINIMUM_FRAMES, Track
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def simulated_impacts(trajectory: pd.DataFrame, case: Case) -> tuple[pd.DataFrame, list[str]]:
+    """Impacts of a simulated trajectory under all three definitions of speed, and remarks on them.
+
+    Where the case has a measured record, its camera is taken: the same interval between frames, and the same noise
+    to weight them by, so that a definition of speed means the same for both.
+    """
+    import pandas as pd
+
+    columns = list(datasets.schema("impact").columns)
+    if case.sphere.e_dry is None or len(trajectory) < MINIMUM_FRAMES:
+        return pd.DataFrame(columns=columns), []
+    track = _as_filmed(trajectory, case)
+    rows, notes = [], []
+    for speed in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+        found = find_impacts(track, case.conditions, speed, record=case.name, kind="simulated")
+        rows += found.rows
+        notes += [f"{speed}: {note}" for note in found.notes]
+    return pd.DataFrame(rows, columns=columns), notes
+
+
+def filmed(case: Case) -> dict[str, list[float | str]]:
+    """What the impacts of a case are taken with beside its trajectory: conditions, and the record's camera."""
+    c, camera = case.conditions, _camera(case)
+    content: dict[str, list[float | str]] = {
+        "fluid: density, viscosity": [c.fluid.density, c.fluid.viscosity],
+        "sphere: diameter, density, e_dry": [c.sphere.diameter, c.sphere.density, c.sphere.e_dry or ""],
+        "gravity": [c.gravity],
+    }
+    if camera is not None:
+        content["camera: s a frame, noise in m"] = [_interval(camera), camera.sigma]
+    return content
+
+
+def _camera(case: Case) -> Track | None:
+    """The measured record whose camera is taken; None where a case has none of positions."""
+    if case.record is None or datasets.resource(case.record).table != "trajectory":
+        return None
+    return datasets.load_track(case.record)
+
+
+def _interval(track: Track) -> float:
+    return float(np.median(np.diff(track.time_s)))
+
+
+def _as_filmed(trajectory: pd.DataFrame, case: Case) -> Track:
+    """The trajectory as the record's camera would have it, the contact in the middle between two frames."""
+    record = _camera(case)
+    if record is None:
+        return Track.from_table(trajectory)
+    interval = _interval(record)
+    time, gap = (trajectory[name].to_numpy() for name in ("time_s", "gap_m"))
+    first, last = np.ceil(time[0] / interval - 0.5), np.floor(time[-1] / interval - 0.5)
+    frames = interval * (np.arange(first, last + 1) + 0.5)
+    if len(frames) < MINIMUM_FRAMES:
+        return Track.from_table(trajectory)
+    return Track(frames, np.interp(frames, time, gap), "gap", record.sigma)

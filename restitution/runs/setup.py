@@ -1,0 +1,150 @@
+"""A case as the lattice solver is told it: scales, box, rates, sphere, drive, film and contact in lattice units.
+
+Nothing of size is allocated here, so that what a kept run was told can be compared with what its case says now
+(:mod:`restitution.runs.told`) in a millisecond or two.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import lbm
+from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
+from lbm.film import Film, lost_to_grid
+from lbm.rates import PRESETS
+from lbm.scales import FlowScales
+from lbm.spheres import Sphere, Spheres
+from restitution.case import Case
+from restitution.impact_speed import H_FILM
+from restitution.lattice_closures import Normal, Tangential, normal_force, rebound, tangential_force
+
+OUTPUT_D = 0.04
+"""Way in diameters that the reference speed makes between two rows of a trajectory."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What decides a run, in lattice units; ``flow`` has the scales that lead back to SI."""
+
+    flow: FlowScales
+    shape: tuple[int, int, int]
+    rates: lbm.Rates
+    faces: dict[str, str]
+    precision: str
+    interpolation: str
+    sphere: Sphere
+    gravity: float
+    drive: Callable | None
+    film: Film | None
+    contact: Contact | None
+
+    @property
+    def rows_apart(self) -> int:
+        """Steps between two rows of a trajectory."""
+        return max(1, round(OUTPUT_D * self.flow.length / self.flow.speed))
+
+    def build(self) -> tuple[lbm.Simulation, Spheres]:
+        """The simulation with its sphere, ready to run."""
+        spheres = Spheres(
+            [self.sphere],
+            gravity=(0.0, 0.0, -self.gravity),
+            film=self.film,
+            contact=self.contact,
+            drive=self.drive,
+            interpolation=self.interpolation,
+        )
+        simulation = lbm.Simulation(self.shape, self.rates, faces=self.faces, dtype=self.precision)
+        simulation.add(spheres)
+        return simulation, spheres
+
+
+def set_up(case: Case) -> Setup:
+    """What the solver is told of ``case``.
+
+    Raises :class:`lbm.InputError` for numbers that it refuses; warns of those it doubts.
+    """
+    n, flow = case.numerics, _scales(case)
+    wide, high = round(n.width_d * flow.length), round(n.height_d * flow.length)
+    radius, density = flow.length / 2, case.sphere.density / case.fluid.density
+    position = (wide / 2, wide / 2, radius + case.release.gap_d * flow.length)
+    return Setup(
+        flow=flow,
+        shape=(wide, wide, high),
+        rates=PRESETS[n.rates](viscosity=flow.viscosity),
+        faces={"x": n.sides, "y": n.sides, "z-": "no-slip", "z+": n.top},
+        precision=n.precision,
+        interpolation=n.interpolation,
+        sphere=Sphere(radius, density, position),
+        gravity=flow.scales.lattice(case.gravity, "acceleration"),
+        drive=_drive(case, flow),
+        film=_film(case, flow),
+        contact=_contact(case, flow, density),
+    )
+
+
+def fall_time(case: Case) -> float:
+    """Estimate of the time in s to the first contact."""
+    gap, fall = case.release.gap_d * case.sphere.diameter, case.conditions.free_fall
+    speed = case.reference_speed
+    if case.release.kind == "drive":
+        return gap / speed + case.release.ramp
+    return gap / speed + 0.5 * speed / fall
+
+
+def film_forces(case: Case, flow: FlowScales) -> tuple[Normal | None, Tangential | None]:
+    """What the film does across and along the wall, in lattice units."""
+    r, mu, tension = flow.length / 2, flow.viscosity, case.film.tension
+    floor = flow.scales.lattice(case.floor, "length")
+    tension = None if tension is None else flow.scales.lattice(tension, "pressure")
+    across = normal_force(case.film, r=r, mu=mu, floor=floor, tension=tension, lost=lost_to_grid)
+    return across, tangential_force(case.film, r=r, mu=mu)
+
+
+def _scales(case: Case) -> FlowScales:
+    n = case.numerics
+    return FlowScales.from_conditions(
+        length_m=case.sphere.diameter,
+        speed_m_s=case.reference_speed,
+        viscosity_m2_s=case.fluid.viscosity / case.fluid.density,
+        density_kg_m3=case.fluid.density,
+        cells=n.cells_per_diameter,
+        lattice_speed=n.lattice_speed,
+    )
+
+
+def _drive(case: Case, flow: FlowScales) -> Callable | None:
+    r = case.release
+    if r.kind == "rest":
+        return None
+    down, along = (flow.scales.lattice(v, "velocity") for v in (r.speed, r.along))
+    ramp, free_below = r.ramp / flow.scales.step_s, r.free_below_d * flow.length
+
+    def drive(step: float, gap: float) -> tuple[float, float, float] | None:
+        share = math.expm1(-step / ramp)
+        return None if gap < free_below else (-along * share, 0.0, down * share)
+
+    return drive
+
+
+def _film(case: Case, flow: FlowScales) -> Film | None:
+    black_box = case.contact is not None and case.contact.mode == "effective"
+    if case.floor is None or (black_box and not case.film.tangential):
+        return None
+    return Film(case.film.cut_off, flow.scales.lattice(case.floor, "length"), *film_forces(case, flow))
+
+
+def _contact(case: Case, flow: FlowScales, density: float) -> Contact | None:
+    c, e = case.contact, case.sphere.e_dry
+    if c is None:
+        return None
+    displaced = math.pi / 6 * flow.length**3
+    carried = displaced * (lattice_added_mass(flow.length) if c.added_mass is None else c.added_mass)
+    if c.mode == "dry":
+        return DryRebound(e, carried)
+    if c.mode != "effective":
+        make = SoftContact.linear if c.mode == "soft_linear" else SoftContact.hertz
+        return make(e, density * displaced + carried, c.duration_steps)
+    free_fall = flow.scales.lattice(case.conditions.free_fall, "acceleration")
+    return FilmRebound(rebound(case, flow.scales.unit("velocity")), H_FILM * flow.length, free_fall)
