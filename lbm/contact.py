@@ -18,6 +18,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from lbm.errors import InputError
+from lbm.sampling import sampled
+
+_SPEEDS = (1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
+"""Speeds in cells a step at which a description samples a contact's law."""
+_BOUNCES = range(6)
+_OVERLAPS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+"""Likewise, overlaps in cells."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +47,15 @@ class FilmRebound:
         if not self.free_fall >= 0:
             raise InputError(f"free_fall = {self.free_fall:g}: must not be negative")
 
+    def describe(self) -> dict:
+        """Every number of the contact; the law as it is at a few speeds, for the first bounces."""
+        return {
+            "kind": type(self).__name__,
+            "edge": self.edge,
+            "free_fall": self.free_fall,
+            "rebound": sampled(self.rebound, [(speed, count) for speed in _SPEEDS for count in _BOUNCES]),
+        }
+
 
 @dataclass(frozen=True)
 class DryRebound:
@@ -58,6 +74,10 @@ class DryRebound:
             raise InputError(f"e_dry = {self.e_dry:g}: must not exceed 1")
         if not self.added_mass >= 0:
             raise InputError(f"added_mass = {self.added_mass:g}: must not be negative")
+
+    def describe(self) -> dict:
+        """Every number of the contact."""
+        return {"kind": type(self).__name__, "e_dry": self.e_dry, "added_mass": self.added_mass}
 
 
 @dataclass(frozen=True)
@@ -100,6 +120,17 @@ class SoftContact:
             return max(0.0, stiffness * overlap**1.5 - 2 * damping * mass / unit * rate)
 
         return cls(force, duration)
+
+    def describe(self) -> dict:
+        """Every number of the contact; its force as it is at a few overlaps and speeds, both ways."""
+        states = [
+            (overlap, sign * speed, impact_speed)
+            for overlap in _OVERLAPS
+            for sign in (-1, 1)
+            for speed in (0.0, 1e-3, 1e-2)
+            for impact_speed in (1e-3, 1e-1)
+        ]
+        return {"kind": type(self).__name__, "duration": self.duration, "force": sampled(self.force, states)}
 
 
 Contact = FilmRebound | DryRebound | SoftContact

@@ -16,9 +16,30 @@ from dataclasses import dataclass
 import numpy as np
 
 from lbm.errors import InputError
+from lbm.sampling import sampled
 
 RESOLVED = 0.5
 """Gap in cells from which on there is a cell of fluid between sphere and wall: its centre is half a cell away."""
+
+_SHARES = (0.05, 0.1, 0.2, 0.5, 0.9)
+"""Gaps, as parts of the cut-off, at which a description samples the forces."""
+_ACROSS = tuple(
+    (sign * speed, -onset if sign < 0 else math.nan)
+    for sign in (-1, 1)
+    for speed in (0.0, 1e-3, 1e-2, 1e-1)
+    for onset in ((1e-2, 1e-1) if sign < 0 else (math.nan,))
+)
+"""Velocities there, and at the cut-off: arriving and leaving."""
+_ALONG = tuple(
+    (np.array(slip), np.array(spin), np.array(normal))
+    for slip, spin, normal in (
+        ((1e-2, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        ((0.0, 0.0, 0.0), (0.0, 1e-3, 0.0), (0.0, 0.0, 1.0)),
+        ((5e-2, 2e-2, 0.0), (1e-2, 3e-3, 0.0), (0.0, 0.0, 1.0)),
+        ((0.0, 2e-2, 1e-2), (0.0, 2e-3, 1e-3), (-1.0, 0.0, 0.0)),
+    )
+)
+"""Slip and spin along walls of different normals."""
 
 Normal = Callable[[float, float, float], float]
 Tangential = Callable[[float, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -41,6 +62,19 @@ class Film:
             raise InputError(
                 f"film: floor = {self.floor:g} must lie between 0 and cut_off = {self.cut_off:g} cells"
             )
+
+    def describe(self) -> dict:
+        """Every number of the film; its forces as they are at a few gaps and motions."""
+        gaps = [self.floor, *(share * self.cut_off for share in _SHARES if share * self.cut_off > self.floor)]
+        return {
+            "cut_off": self.cut_off,
+            "floor": self.floor,
+            "normal": sampled(self.normal, [(gap, *motion) for gap in gaps for motion in _ACROSS]),
+            "tangential": sampled(
+                self.tangential and (lambda *given: np.concatenate(self.tangential(*given))),
+                [(gap, *motion) for gap in gaps for motion in _ALONG],
+            ),
+        }
 
     def resistance(self, gap: float, velocity: float, onset: float) -> tuple[float, float]:
         """Normal force at velocity zero and its slope; zero where it would drive the sphere on."""

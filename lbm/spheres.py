@@ -26,6 +26,7 @@ from lbm.film import Film
 from lbm.lattice import BOUNCE, PERIODIC, Lattice
 from lbm.refill import refill
 from lbm.reflection import SCHEMES
+from lbm.sampling import sampled
 from lbm.surface import REACH
 from lbm.wall_motion import FRACTION, STATE_SIZE, Impact, WallMotion, WallState
 
@@ -33,6 +34,10 @@ Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
 """Columns of :meth:`Spheres.track`; f and t are force and torque of the fluid."""
 _SMALLEST_RADIUS = 2.0
+_STEPS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
+"""Steps at which a description samples the drive."""
+_GAPS = (0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 0.9, 1.1, 1.5, 3.0)
+"""Gaps in radii at which it does."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +68,8 @@ class Spheres:
     gravity : acceleration, 3 components; buoyancy follows, the fluid itself is not accelerated.
     film, contact : what acts near no-slip walls beyond the fluid's force; without contact nothing stops it.
     drive : ``drive(step, gap)`` gives the velocity of all spheres at the end of that step, or None, which sets
-        them free for good.
+        them free for good. Like all functions given here it depends on its arguments alone, for a checkpoint
+        knows it by what it gives at some of them.
     interpolation : a scheme of :mod:`lbm.reflection`.
     fraction : size of the sub-steps near a wall; see :mod:`lbm.wall_motion`.
     """
@@ -91,7 +97,7 @@ class Spheres:
         self.spins = _vectors("spin", [s.spin for s in spheres])
         self.spin_changes = np.zeros_like(self.spins)
         self.gravity = _vectors("gravity", [gravity])[0]
-        self.film, self.drive = film, drive
+        self.film, self.contact, self.drive = film, contact, drive
         self.wall_motion = WallMotion(film, contact, fraction)
         self.scheme = SCHEMES[interpolation]
         self.forces, self.torques = np.zeros_like(self.centres), np.zeros_like(self.centres)
@@ -186,14 +192,15 @@ class Spheres:
         return new
 
     def describe(self) -> dict:
-        """What must agree for a restart."""
+        """Every number that decides the motion; functions by what they give at a few arguments."""
         return {
             "radii": self.radii.tolist(),
             "masses": self.masses.tolist(),
             "gravity": self.gravity.tolist(),
             "interpolation": self.scheme,
-            "film": None if self.film is None else [self.film.cut_off, self.film.floor],
-            "contact": type(self.wall_motion.contact).__name__,
+            "film": None if self.film is None else self.film.describe(),
+            "contact": None if self.contact is None else self.contact.describe(),
+            "drive": sampled(self.drive, [(step, r * self.radii[0]) for step in _STEPS for r in _GAPS]),
             "fraction": self.wall_motion.fraction,
         }
 

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from lbm import InputError, NoSlip, OutputError, Rates, Simulation
+from lbm.contact import DryRebound, FilmRebound, SoftContact
+from lbm.film import Film
+from lbm.spheres import Sphere, Spheres
 
 RATES = Rates.two_relaxation_times(0.02)
 SHAPE = (9, 8, 10)
@@ -161,3 +164,86 @@ def test_an_impossible_state_is_refused(tmp_path, name, value):
         file.attrs[name] = value
     with pytest.raises(InputError, match="damaged"):
         flow.restore(tmp_path / "c.h5")
+
+
+# Everything that decides the motion of spheres
+
+
+def _hertz_like(stiffness):
+    return SoftContact(lambda overlap, rate, speed: max(0.0, stiffness * overlap - 0.1 * rate), 20.0)
+
+
+def _film(factor=1.0, cut_off=0.5, floor=0.01, normal=True, tangential=None):
+    return Film(cut_off, floor, (lambda gap, v, onset: -factor * v / gap) if normal else None, tangential)
+
+
+def _drag_along(factor):
+    return lambda gap, slip, spin, normal: (-factor * slip / gap, -spin / gap)
+
+
+def _driven(speed, below=2.0):
+    return lambda step, gap: (0.0, 0.0, -speed * min(1.0, step / 50)) if gap > below else None
+
+
+FALLING = {
+    "gravity": (0.0, 0.0, -1e-4),
+    "film": _film(),
+    "contact": DryRebound(0.97, 60.0),
+    "drive": _driven(0.02),
+}
+LAW = FilmRebound(lambda speed, count: 0.7 * speed, 0.5, 1e-4)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "named"),
+    [
+        ({}, {"contact": DryRebound(0.5, 60.0)}, r"contact\.e_dry = 0\.97, this simulation has 0\.5"),
+        ({}, {"contact": DryRebound(0.97, 61.0)}, "contact.added_mass"),
+        ({}, {"contact": None}, "contact"),
+        ({}, {"contact": SoftContact.linear(0.97, 900.0, 20.0)}, "contact"),
+        ({}, {"film": None}, "film"),
+        ({}, {"film": _film(normal=False)}, "film.normal"),
+        ({}, {"film": _film(1 + 1e-9)}, "film.normal"),
+        ({}, {"film": _film(tangential=_drag_along(1.0))}, "film.tangential"),
+        ({}, {"film": _film(floor=0.02)}, "film.floor"),
+        ({"film": _film(tangential=_drag_along(1.0))}, {"film": _film(tangential=_drag_along(2.0))}, "tangential"),
+        (
+            {"film": None, "contact": LAW},
+            {"film": None, "contact": FilmRebound(lambda speed, count: 0.7 * speed + 1e-6, 0.5, 1e-4)},
+            "contact.rebound",
+        ),
+        (
+            {"film": None, "contact": LAW},
+            {"film": None, "contact": FilmRebound(lambda speed, count: (0.7, 0.7, 0.6)[count] * speed, 0.5, 1e-4)},
+            "contact.rebound",
+        ),
+        ({"film": None, "contact": LAW}, {"film": None, "contact": FilmRebound(LAW.rebound, 0.6, 1e-4)}, "edge"),
+        (
+            {"contact": SoftContact.linear(0.9, 900.0, 20.0)},
+            {"contact": SoftContact.linear(0.9, 900.0, 21.0)},
+            "contact.duration",
+        ),
+        (
+            {"contact": SoftContact.hertz(0.9, 900.0, 20.0)},
+            {"contact": SoftContact.hertz(0.8, 900.0, 20.0)},
+            "contact.force",
+        ),
+        ({"contact": _hertz_like(1.0)}, {"contact": _hertz_like(1.001)}, "contact.force"),
+        ({}, {"drive": None}, "drive"),
+        ({}, {"drive": _driven(0.021)}, "drive"),
+        ({}, {"drive": _driven(0.02, below=4.0)}, "drive"),
+        ({}, {"gravity": (0.0, 0.0, -2e-4)}, "gravity"),
+        ({}, {"fraction": 0.1}, "fraction"),
+        ({}, {"interpolation": "central-linear"}, "interpolation"),
+    ],
+)
+def test_a_simulation_with_another_law_of_motion_is_refused(tmp_path, one, other, named):
+    def flow(changes):
+        simulation = Simulation((16, 16, 20), RATES, faces={"z": "no-slip"})
+        simulation.add(Spheres([Sphere(3.0, 8.0, (8.0, 8.0, 9.0))], **{**FALLING, **changes}))
+        return simulation
+
+    flow(one).save(tmp_path / "state.h5")
+    flow(one).restore(tmp_path / "state.h5")
+    with pytest.raises(InputError, match=named):
+        flow(other).restore(tmp_path / "state.h5")
