@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
 
-    from restitution.table_schema import TableSchema
+    from restitution.table_schema import Schema
 
 FOLDER = Path("reports/runs")
 RESOLVED = "resolved"
@@ -156,7 +156,7 @@ def _result(place: Path, case: Case, about: About, stale: bool) -> KeptRun:
     return KeptRun(case, about, **tables, flow=flow, stale=stale)
 
 
-def _table(path: Path, schema: TableSchema, may_be_empty: bool) -> pd.DataFrame:
+def _table(path: Path, schema: Schema, may_be_empty: bool) -> pd.DataFrame:
     import pandas as pd
 
     if may_be_empty and path.is_file() and len(path.read_bytes().splitlines()) < 2:

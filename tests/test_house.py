@@ -1,6 +1,7 @@
-"""Which package knows which: the solver nothing of the toolkit, the toolkit the solver in one module."""
+"""Which module knows which: the solver nothing of the toolkit, the toolkit the solver in one module."""
 
 import ast
+import importlib.util
 from pathlib import Path
 
 import pytest
@@ -27,3 +28,28 @@ def importers(package, name):
 )
 def test_the_packages_meet_in_one_module(package, name, allowed):
     assert importers(package, name) == allowed
+
+
+def own_names():
+    """(importer, module, name) of everything that a module takes from another of the house, lazy or for types."""
+    for package in (lbm, restitution):
+        root = Path(package.__file__).parent
+        for path in root.rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in (
+                    "lbm",
+                    "restitution",
+                ):
+                    for alias in node.names:
+                        yield path.relative_to(root.parent).as_posix(), node.module, alias.name
+
+
+def is_there(module, name):
+    there = importlib.import_module(module)
+    if hasattr(there, name):
+        return True
+    return hasattr(there, "__path__") and importlib.util.find_spec(f"{module}.{name}") is not None
+
+
+def test_every_name_that_is_imported_is_there():
+    assert [entry for entry in own_names() if not is_there(*entry[1:])] == []
