@@ -94,7 +94,7 @@ def read_run(case: Case, folder: Path = FOLDER) -> KeptRun | None:
     place = folder / case.name
     if not (place / "run.json").is_file():
         return None
-    about = _about(place)
+    about = read_about(place)
     if about.key == run_key(case).key:
         return _result(place, case, about, stale=False)
     return _as_it_was_run(place, about)
@@ -111,7 +111,7 @@ def own_runs(folder: Path, known: Collection[str]) -> list[KeptRun]:
         if place.name in known or not (place / "run.json").is_file():
             continue
         try:
-            about = _about(place)
+            about = read_about(place)
             found.append(_as_it_was_run(place, about) if about.model == RESOLVED else None)
         except InputError as error:
             defects += error.defects
@@ -120,7 +120,8 @@ def own_runs(folder: Path, known: Collection[str]) -> list[KeptRun]:
     return [run for run in found if run is not None]
 
 
-def _about(place: Path) -> About:
+def read_about(place: Path) -> About:
+    """What ``run.json`` in a folder of results says; raises :class:`InputError` for one that cannot be used."""
     path = place / "run.json"
     try:
         about = About.model_validate(json.loads(path.read_bytes()))

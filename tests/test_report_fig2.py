@@ -10,6 +10,7 @@ import pytest
 
 from restitution import case_files, datasets
 from restitution.cli import main
+from restitution.commands.simulate import show_result
 from restitution.flow_pictures import FlowFrames, Frame
 from restitution.report import fig1, fig2, point_particle
 from restitution.run_key import run_key
@@ -67,6 +68,17 @@ def report(tmp_path_factory):
     assert not failed
     assert {p.name for p in (folder / "out").iterdir()} == set(files)
     return folder
+
+
+def test_a_run_that_is_shown_has_the_apexes_of_the_report(tmp_path, capsys):
+    """Rows so far apart that the highest of them is not the apex; the last flight counts, seen to come down."""
+    keep(tmp_path, fig2.MAIN, 0.75)
+    table = pd.read_csv(tmp_path / fig2.MAIN / "trajectory.csv").iloc[::30]
+    (tmp_path / fig2.MAIN / "trajectory.csv").write_text(csv(table))
+    show_result(tmp_path / fig2.MAIN, case_files.read_case(fig2.MAIN))
+    shown = [line.split()[-1] for line in capsys.readouterr().out.splitlines()[1:5]]
+    by_hand = [1e3 * (0.75**k * 0.585) ** 2 / 2 / FALL for k in range(1, 5)]
+    assert [float(apex) for apex in shown] == pytest.approx(by_hand, abs=1e-3)
 
 
 def test_scores_of_ballistic_rebounds(report):

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from restitution.console import show, show_rows
 from restitution.errors import Defect, InputError
-from restitution.kept_runs import RESOLVED
+from restitution.kept_runs import read_about
 
 POINT_PARTICLE = "point particle"
 _SHOWN = 12
@@ -29,8 +28,8 @@ def folder_for(given: str | None, default: str, model: str) -> Path:
 def _model(folder: Path) -> str | None:
     """Which model made the results in a folder; None where there are none that can be read."""
     try:
-        return json.loads((folder / "run.json").read_text("utf-8")).get("model", RESOLVED)
-    except (OSError, ValueError, AttributeError):
+        return read_about(folder).model
+    except (OSError, InputError):
         return None
 
 
