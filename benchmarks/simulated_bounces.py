@@ -46,8 +46,7 @@ def main() -> None:
     tracks = {RECORD: datasets.load_track(RECORD)} | {name: filmed(name) for name in parser.parse_args().cases}
     for name, track in tracks.items():
         found = whole_trajectory(recording(name, track, conditions), True)
-        known = dict(zip(found.names, zip(found.mean, found.sigma, strict=True), strict=True))
-        shown = [known[f"e_{n}"] for n in range(1, BOUNCES + 1)] + [known["scale"]]
+        shown = [*found.restitutions[:BOUNCES], found.unknowns["scale"]]
         table.add_row(name, *(f"{m:.3f} ± {s:.3f}" for m, s in shown), f"{found.rms_d:.3f}")
     Console(width=120).print(table)
 

@@ -149,7 +149,7 @@ class TrajectoryFit:
             frames=len(t.recording.time_s),
             frames_at_rest=t.recording.rest_frames,
             reading_sigma_m=t.recording.sigma,
-            unknowns={n: (float(a), float(b)) for n, a, b in zip(t.names, t.mean, t.sigma, strict=True)},
+            unknowns=t.unknowns,
             correlated_sigma_m=t.sigma_u,
             correlation_time_s=t.tau,
             log_evidence=t.log_evidence,

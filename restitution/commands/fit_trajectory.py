@@ -86,10 +86,9 @@ def _show_records(measured: Measured) -> None:
     for wake, found in measured.found.items():
         for t in found:
             d = t.recording.conditions.sphere.diameter
-            known = dict(zip(t.names, zip(t.mean, t.sigma, strict=True), strict=True))
-            e = ", ".join(f"{m:.3f} +- {s:.3f}" for n, (m, s) in known.items() if n.startswith("e_"))
-            start = "{} {:.4g} +- {:.2g}".format(t.recording.start.name, *known[t.recording.start.name])
-            scale = "{:.3f} +- {:.3f}".format(*known["scale"])
+            e = ", ".join(f"{mean:.3f} +- {sigma:.3f}" for mean, sigma in t.restitutions)
+            start = "{} {:.4g} +- {:.2g}".format(t.recording.start.name, *t.unknowns[t.recording.start.name])
+            scale = "{:.3f} +- {:.3f}".format(*t.unknowns["scale"])
             noise = f"{t.sigma_u[0] / d:.2g} d, {1e3 * t.tau[0]:.2g} ms"
             rows.append((t.recording.name, "yes" if wake else "no", e, start, scale, noise, f"{t.rms_d:.4f}",
                          f"{t.log_evidence:.1f}"))  # fmt: skip

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from restitution.calibration.whole_trajectories import WholeTrajectory
     from restitution.conditions import Conditions
 
+BOUNCES = 3
+"""Bounces of each record whose restitution is tabulated."""
 MODELS = {True: "with the wake of the approach", False: "without the wake"}
 
 
@@ -163,16 +165,17 @@ def records(t: Trajectories) -> list[dict]:
 
 def _record(found: WholeTrajectory, wake: bool, t: Trajectories) -> dict:
     d = found.recording.conditions.sphere.diameter
-    known = dict(zip(found.names, zip(found.mean, found.sigma, strict=True), strict=True))
+    scale, scale_sigma = found.unknowns["scale"]
     shown = wake == t.measured.preferred
     rms, apex = t.distances[found.recording.name] if shown else (np.nan, np.nan)
     row = {
         "record": found.recording.name, "model": MODELS[wake], "frames": len(found.recording.time_s),
         "frames_at_rest": found.recording.rest_frames, "ln_evidence": found.log_evidence,
         "correlated_noise_d": found.sigma_u[0] / d, "correlation_time_s": found.tau[0],
-        "scale": known["scale"][0], "scale_sigma": known["scale"][1], "rms_d": found.rms_d, "rms_law_d": rms,
+        "scale": scale, "scale_sigma": scale_sigma, "rms_d": found.rms_d, "rms_law_d": rms,
         "first_apex_law_m": apex,
     }  # fmt: skip
-    for n in range(3):
-        row[f"e_{n + 1}"], row[f"e_{n + 1}_sigma"] = known.get(f"e_{n + 1}", (np.nan, np.nan))
+    e = found.restitutions + [(np.nan, np.nan)] * BOUNCES
+    for n in range(BOUNCES):
+        row[f"e_{n + 1}"], row[f"e_{n + 1}_sigma"] = e[n]
     return row
