@@ -17,9 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from restitution.calibration.impact_table import Reading
 from restitution.calibration.maximum import LEVELS
 from restitution.calibration.plan import Plan
+from restitution.calibration.reading import Reading
 from restitution.calibration.rebound_model import model_of
 from restitution.calibration.synthetic_recordings import Filming, K, draw, filmed
 from restitution.calibration.trajectory_fit import law_fit, observations

@@ -14,8 +14,8 @@ from restitution.bounce import Closures, Release, bounce
 from restitution.bounce.agreement import release_of
 from restitution.calibration.correlated_noise import gram_matrices
 from restitution.calibration.fit_result import read_fit
-from restitution.calibration.impact_table import Reading
 from restitution.calibration.plan import Plan
+from restitution.calibration.reading import Reading
 from restitution.calibration.rebound_model import model_of
 from restitution.calibration.recordings import read_recordings, recording
 from restitution.calibration.synthetic_recordings import Filming, K, draw, filmed

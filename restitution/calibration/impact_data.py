@@ -14,8 +14,9 @@ from pathlib import Path
 
 from restitution import datasets
 from restitution.calibration.digitizer import PIXEL, is_export, read_export
-from restitution.calibration.impact_table import SCHEMA, Reading, from_table
+from restitution.calibration.impact_table import SCHEMA, from_table
 from restitution.calibration.observations import Observations, join
+from restitution.calibration.reading import Reading
 from restitution.calibration.track_impacts import from_track, from_track_file, is_track
 from restitution.errors import Defect, InputError
 from restitution.table_schema import read_schema

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from restitution import datasets
-from restitution.calibration.impact_checks import CONDITIONS, NO_SPEED
-from restitution.calibration.impact_table import SCHEMA, Reading, conditions_of_row, from_table
+from restitution.calibration.impact_checks import CONDITIONS, NO_SPEED, check_physical
+from restitution.calibration.impact_table import SCHEMA, conditions_of_row
 from restitution.calibration.observations import Observations
+from restitution.calibration.reading import Reading
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.impacts import find_impacts
@@ -54,12 +54,14 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
     found = find_impacts(track, conditions, how.speed, stokes, Path(name).stem)
     if not found.rows:
         raise InputError(Defect("no impact is resolved in this track", name))
-    how = replace(how, stokes=stokes, conditions=conditions, columns={})
-    return replace(
-        from_table(found.table().assign(source=Path(name).stem), how, name, digest),
+    o = Observations.from_impacts(
+        found.rows,
+        conditions,
         places=tuple((f"{name}, impact", int(row["impact"])) for row in found.rows),
+        files={name: digest},
         notes=tuple(f"{name}: {note}" for note in found.notes),
     )
+    return check_physical(o, how)
 
 
 def _conditions_of_track(path: str) -> Conditions:

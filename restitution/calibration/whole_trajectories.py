@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,9 +33,6 @@ from restitution.errors import Defect, InputError
 from restitution.impact_speed import H_FILM
 from restitution.impacts import find_impacts
 from restitution.stokes import Speed, convention
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 TOLERANCE = 1e-5
 """Relative error of an integration step; the trajectory is then within 1e-4 d of the converged one."""
@@ -269,15 +265,6 @@ def distance_d(found: WholeTrajectory, closures: Closures) -> tuple[Trajectory, 
     path = _fly(r, float(found.likelihood.named(found.mean).start), closures)
     apexes = path.apexes()
     return path, agreement(path, r.track).rms_d, float(apexes[0]) if len(apexes) else 0.0
-
-
-def impact_table(found: Sequence[WholeTrajectory], stokes: str = "st") -> pd.DataFrame:
-    """The impacts of all records as a table with the columns of the impact schema."""
-    import pandas as pd
-
-    from restitution import datasets
-
-    return pd.DataFrame([row for t in found for row in t.rows(stokes)], columns=datasets.schema("impact").columns)
 
 
 def band(found: WholeTrajectory, time: NDArray, draws: int = 200, seed: int = 0) -> NDArray:

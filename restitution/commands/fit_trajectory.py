@@ -11,8 +11,8 @@ from restitution.console import show, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.fit_result import FitResult
-    from restitution.calibration.impact_table import Reading
     from restitution.calibration.ranking import Ranking
+    from restitution.calibration.reading import Reading
     from restitution.calibration.trajectory_fit import Measured, TrajectoryFit
 
 READINGS = ("eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative")

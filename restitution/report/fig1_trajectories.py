@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution.calibration.fit_result import result_of
-from restitution.calibration.impact_table import Reading
 from restitution.calibration.plan import Plan
 from restitution.calibration.prediction import predict
 from restitution.calibration.ranking import Ranking, Score, rank
+from restitution.calibration.reading import Reading
 from restitution.calibration.rebound_model import model_of
 from restitution.calibration.recordings import read_recordings
 from restitution.calibration.trajectory_fit import CLEAR, Measured, closures_of, observations

@@ -8,20 +8,17 @@ no law explains; impacts without a rebound count as limits. The scores are those
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from restitution.calibration.impact_table import Reading, from_table
+from restitution.calibration.observations import Observations
 from restitution.calibration.plan import Plan
 from restitution.calibration.ranking import Ranking, Score, rank
 from restitution.calibration.rebound_model import model_of
-from restitution.stokes import Speed
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from restitution.calibration.observations import Observations
     from restitution.conditions import Conditions
 
 FORMS = ("eq4_exponential", "eq4_rational", "eq4_linear")
@@ -51,9 +48,8 @@ class Judgement:
 
 def observations(every: pd.DataFrame, definition: str, conditions: dict[str, Conditions]) -> Observations:
     """The measured impacts under one definition of speed, each record a source."""
-    table = every[(every.speed_definition == definition) & (every.kind == "measured")].reset_index(drop=True)
-    found = from_table(table, Reading(stokes="st", speed=Speed(definition)), f"impacts, {definition}", "")
-    return dataclasses.replace(found, conditions=tuple(conditions[r] for r in table.record), files={})
+    rows = every[(every.speed_definition == definition) & (every.kind == "measured")]
+    return Observations.from_impacts(rows, [conditions[record] for record in rows.record])
 
 
 def judge(every: pd.DataFrame, conditions: dict[str, Conditions], names: tuple[str, ...]) -> list[Judgement]:
