@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from restitution.table_schema import Schema
 
-FOLDER = Path("reports/runs")
 RESOLVED = "resolved"
 """The model of a run whose ``run.json`` names none."""
 _MEND = "delete its folder, and the report makes the run again, or leaves it out if it is not one of its figure"
@@ -86,7 +85,7 @@ class KeptRun:
         )
 
 
-def read_run(case: Case, folder: Path = FOLDER) -> KeptRun | None:
+def read_run(case: Case, folder: Path) -> KeptRun | None:
     """The kept result of a case; raises :class:`InputError` for a damaged one.
 
     None where there is none, or one of a case in an older form than can be read.
@@ -172,9 +171,7 @@ def _check_end(path: Path, time: np.ndarray, about: About) -> None:
         raise InputError(Defect(f"ends before the run, which went on to {end:.4g} s", str(path), len(time) + 1))
 
 
-def ensure(
-    case: Case, folder: Path = FOLDER, fresh: bool = False, show: Callable[[str], None] | None = None
-) -> KeptRun:
+def ensure(case: Case, folder: Path, fresh: bool = False, show: Callable[[str], None] | None = None) -> KeptRun:
     """The kept result of a case, run first where there is none of its key or ``fresh`` asks for it.
 
     A run that was stopped is continued. Errors as in :func:`restitution.simulate.simulate`.

@@ -20,7 +20,7 @@ from restitution.bounces import Bounces, filmed
 from restitution.case import Case
 from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder
-from restitution.kept_runs import FOLDER, KeptRun, ensure, own_runs, read_run
+from restitution.kept_runs import KeptRun, ensure, own_runs, read_run
 from restitution.report.fig2_scores import scores
 from restitution.report.point_particle import PointLine, draw_physics, lines, physics
 from restitution.simulate import csv
@@ -33,7 +33,8 @@ PUBLISHED = "biegert2017_st152"
 MAIN = "gondret_st152_10"
 SHORT = ("gondret_st152_10_measured", MAIN, "gondret_st152_10_soft")
 """What the figure shows: contact modes (a), (b), (c) at ten cells a diameter."""
-VERIFICATION = Path("benchmarks/sphere.json")
+VERIFICATION = "benchmarks/sphere.json"
+"""Where a checkout keeps the solver's verification; what is read is the caller's to say."""
 
 
 class Check(BaseModel):
@@ -67,7 +68,7 @@ class Fig2:
 
 
 def gather(
-    runs: str | Path = FOLDER,
+    runs: str | Path,
     verification: str | Path | None = None,
     full: bool = False,
     fresh: bool = False,
@@ -123,11 +124,11 @@ def _kept(cases: dict[str, Case], folder: Path, skip: Collection[str] = ()) -> d
 
 
 def _checks(given: str | Path | None) -> list[Check]:
-    """The solver's verification; none where no file is named and the benchmarks have not been run."""
-    path = VERIFICATION if given is None else Path(given)
+    """The solver's verification; none where no file is named."""
+    if given is None:
+        return []
+    path = Path(given)
     if not path.is_file():
-        if given is None:
-            return []
         raise InputError(Defect("is no file", str(path)))
     try:
         return TypeAdapter(list[Check]).validate_python(json.loads(path.read_bytes()))
@@ -137,7 +138,7 @@ def _checks(given: str | Path | None) -> list[Check]:
 
 def write(
     folder: str | Path,
-    runs: str | Path = FOLDER,
+    runs: str | Path,
     verification: str | Path | None = None,
     full: bool = False,
     fresh: bool = False,

@@ -63,7 +63,7 @@ def render(
         numerics=[numerics(run) for run in fig2.runs.values()],
         checks=[check(c) for c in fig2.checks],
         missed=missed(fig2.checks),
-        verification=str(content.VERIFICATION),
+        verification=content.VERIFICATION,
         failed=fig2.failed,
         stale=[name for name, run in fig2.runs.items() if run.stale],
         missing=_missing(fig2),
