@@ -23,8 +23,8 @@ from restitution.bounce import Closures, OwnWake, Release, bounce
 from restitution.bounce.agreement import Agreement, agreement, release_of
 from restitution.bounce.sensitivity import forces_off
 from restitution.conditions import Conditions
-from restitution.impact_speed import H_FILM
 from restitution.laws.cavitation import ATMOSPHERE
+from restitution.stokes import H_FILM
 from restitution.tracks import Track
 
 GONDRET = ("gondret2002_st152", "gondret2002_st27")

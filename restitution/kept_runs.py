@@ -131,6 +131,14 @@ def read_about(place: Path) -> About:
     return about
 
 
+def model_in(place: Path) -> str | None:
+    """Which model made the results in a folder, damaged or not; None where there are none."""
+    try:
+        return json.loads((place / "run.json").read_text("utf-8")).get("model", RESOLVED)
+    except (OSError, ValueError, AttributeError):
+        return None
+
+
 def _as_it_was_run(place: Path, about: About) -> KeptRun | None:
     try:
         case = Case.model_validate(about.case_as_run)

@@ -25,8 +25,8 @@ from lbm.scales import FlowScales
 from lbm.spheres import Sphere, Spheres
 from restitution.case import Case
 from restitution.errors import Defect, InputError, StoppedError
-from restitution.impact_speed import H_FILM
 from restitution.lattice_closures import Normal, Tangential, normal_force, rebound, tangential_force
+from restitution.stokes import H_FILM
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -33,7 +33,7 @@ from restitution.flow_pictures import FlowFrames
 from restitution.impacts import find_impacts
 from restitution.run_key import RunKey, run_key
 from restitution.run_progress import RunProgress
-from restitution.stokes import Speed
+from restitution.stokes import MEASURED_SPEEDS
 from restitution.tracks import MINIMUM_FRAMES, Track
 
 if TYPE_CHECKING:
@@ -152,7 +152,7 @@ def simulated_impacts(trajectory: pd.DataFrame, case: Case) -> tuple[pd.DataFram
         return pd.DataFrame(columns=columns), []
     track = _as_filmed(trajectory, case)
     rows, notes = [], []
-    for speed in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+    for speed in MEASURED_SPEEDS:
         found = find_impacts(track, case.conditions, speed, record=case.name, kind="simulated")
         rows += found.rows
         notes += [f"{speed}: {note}" for note in found.notes]

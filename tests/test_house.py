@@ -10,17 +10,23 @@ import lbm
 import restitution
 
 
+def imported(path):
+    """Names of the modules that a file imports, at the top or anywhere within."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
 def importers(package, name):
-    """Modules of ``package`` that import ``name``, at the top or anywhere within."""
+    """Modules of ``package`` that import ``name``."""
     root = Path(package.__file__).parent
-    found = set()
-    for path in root.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
-            names += [node.module or ""] if isinstance(node, ast.ImportFrom) and node.level == 0 else []
-            if any(n.split(".")[0] == name for n in names):
-                found.add(path.relative_to(root).as_posix())
-    return found
+    return {
+        path.relative_to(root).as_posix()
+        for path in root.rglob("*.py")
+        if any(n.split(".")[0] == name for n in imported(path))
+    }
 
 
 @pytest.mark.parametrize(
@@ -53,3 +59,15 @@ def is_there(module, name):
 
 def test_every_name_that_is_imported_is_there():
     assert [entry for entry in own_names() if not is_there(*entry[1:])] == []
+
+
+def test_benchmarks_are_imported_by_nobody():
+    root = Path(__file__).parent.parent
+    files = [path for place in ("tests", "lbm", "restitution") for path in (root / place).rglob("*.py")]
+    names = {name for path in files for name in imported(path) if name.split(".")[0] == "benchmarks"}
+    assert names <= {"benchmarks.sphere_flows"}  # becomes lbm.problems.spheres
+
+
+def test_the_solver_is_tested_without_the_toolkit():
+    files = (Path(__file__).parent / "lbm").rglob("*.py")
+    assert [path.name for path in files if any(n.split(".")[0] == "restitution" for n in imported(path))] == []

@@ -32,7 +32,7 @@ from restitution.calibration.recording_checks import begins_rising, bounces, che
 from restitution.calibration.track_impacts import track_of
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
-from restitution.impact_speed import H_FILM
+from restitution.stokes import H_FILM
 from restitution.tables import read_header
 from restitution.tracks import Track, contacts
 

@@ -12,7 +12,7 @@ from restitution.calibration.reading import Reading
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.impacts import find_impacts
-from restitution.stokes import Speed
+from restitution.stokes import MEASURED_SPEEDS
 from restitution.table_schema import read_schema
 from restitution.tables import read_header, read_table
 from restitution.tracks import Track
@@ -46,7 +46,7 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
     """The impacts of one track under the stated definition of speed, which must be far, contact or window."""
     if how.speed is None:
         raise InputError(Defect(NO_SPEED, name))
-    if how.speed not in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+    if how.speed not in MEASURED_SPEEDS:
         raise InputError(
             Defect("a track gives the far, contact or window speed", name, None, "--speed", str(how.speed))
         )

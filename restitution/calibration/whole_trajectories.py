@@ -30,9 +30,8 @@ from restitution.calibration.recordings import Recording
 from restitution.calibration.trajectory_likelihood import Marginal, Noise, RecordLikelihood
 from restitution.calibration.unknowns import restitution_name
 from restitution.errors import Defect, InputError
-from restitution.impact_speed import H_FILM
 from restitution.impacts import find_impacts
-from restitution.stokes import Speed, convention
+from restitution.stokes import H_FILM, Speed, convention
 
 TOLERANCE = 1e-5
 """Relative error of an integration step; the trajectory is then within 1e-4 d of the converged one."""

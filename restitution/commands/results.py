@@ -6,7 +6,7 @@ from pathlib import Path
 
 from restitution.console import show, show_rows
 from restitution.errors import Defect, InputError
-from restitution.kept_runs import read_about
+from restitution.kept_runs import model_in
 
 POINT_PARTICLE = "point particle"
 _SHOWN = 12
@@ -19,18 +19,10 @@ def folder_for(given: str | None, default: str, model: str) -> Path:
     folder = Path(given or default)
     if folder.exists() and not folder.is_dir():
         raise InputError(Defect("is no folder", str(folder), None, "--out"))
-    found = _model(folder)
-    if found not in (None, model):
-        raise InputError(Defect(f"holds results of the other model, {found}: choose another folder", str(folder)))
+    other = model_in(folder)
+    if other not in (None, model):
+        raise InputError(Defect(f"holds results of the other model, {other}: choose another folder", str(folder)))
     return folder
-
-
-def _model(folder: Path) -> str | None:
-    """Which model made the results in a folder; None where there are none that can be read."""
-    try:
-        return read_about(folder).model
-    except (OSError, InputError):
-        return None
 
 
 def show_contacts(contacts: list[dict[str, float]], apexes_mm: list[float]) -> None:

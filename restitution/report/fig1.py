@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from restitution import comparison, datasets, laws
 from restitution.files import write_folder
 from restitution.impacts import find_impacts
-from restitution.stokes import Speed
+from restitution.stokes import MEASURED_SPEEDS, Speed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -88,7 +88,7 @@ def _everything() -> tuple:
     conditions = {r.name: r.conditions for r in resources}
     known = [laws.get(name) for name in (*EQ4_READINGS, *OTHERS)]
     tables, scores, notes = [], [], {}
-    for definition in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+    for definition in MEASURED_SPEEDS:
         rows: list[dict] = []
         notes[str(definition)] = []
         for r in resources:

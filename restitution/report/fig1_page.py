@@ -5,18 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from restitution import datasets, laws
-from restitution.impact_speed import H_FILM
 from restitution.impacts import find_impacts
 from restitution.report import fig1 as content
 from restitution.report import fig1_trajectories
 from restitution.report.fig1_verdict import in_words, table
 from restitution.report.page import render as render_page
-from restitution.stokes import CONVENTIONS, Speed
+from restitution.stokes import CONVENTIONS, H_FILM, MEASURED_SPEEDS, Speed
 
 if TYPE_CHECKING:
     import pandas as pd
 
-DEFINITIONS = [str(s) for s in (Speed.FAR, Speed.CONTACT, Speed.WINDOW)]
+DEFINITIONS = [str(s) for s in MEASURED_SPEEDS]
 
 
 def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
