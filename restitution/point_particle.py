@@ -26,12 +26,10 @@ The fluid has no end but the wall.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import time
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,9 +41,10 @@ from restitution.case import Case
 from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.measured_bounces import measured_restitution
-from restitution.run_key import RunKey, program, run_key
-from restitution.simulate import csv, simulated_impacts
+from restitution.run_key import run_key
+from restitution.simulate import simulated_impacts
 from restitution.stokes import StokesNumber
+from restitution.table_writing import table_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,7 +58,6 @@ _FIELDS = {
     "release.gap": "release.gap_d", "end": "run.duration", "rebound": "contact.law",
     "sphere.density / fluid.density": "sphere.density",
 }  # fmt: skip
-_HERE = Path(__file__).parent
 
 
 @dataclass(frozen=True)
@@ -173,7 +171,7 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
     trajectory, velocity = table[["time_s", "gap_m"]], table[["time_s", "velocity_m_s"]]
     impacts, notes = simulated_impacts(trajectory, case)
     about = {
-        **key(case).stated(),
+        **replace(run_key(case), code="").stated(),  # takes milliseconds: is not kept, and never stale
         "model": "point particle",
         "case": case.name,
         "title": case.title,
@@ -190,25 +188,13 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
         "notes": _not_used(case) + notes,
         "case_as_run": case.model_dump(mode="json", exclude_none=True),
     }
-    contents = (csv(trajectory), csv(velocity), csv(impacts), json.dumps(about, indent=1) + "\n")
+    contents = (
+        table_text(trajectory),
+        table_text(velocity),
+        table_text(impacts),
+        json.dumps(about, indent=1) + "\n",
+    )
     write_folder(folder, dict(zip(FILES, contents, strict=True)))
-
-
-def key(case: Case) -> RunKey:
-    """The key of a case under this version of the model and of the laws."""
-    return replace(run_key(case), code=code_hash())
-
-
-@cache
-def code_hash() -> str:
-    """Hash of the model, of the laws, and of what lies between them and the tables."""
-    names = ("conditions", "impact_speed", "impacts", "branch", "measured_bounces", "simulate", "stokes", "tracks")
-    files = [*(_HERE / "bounce").glob("*.py"), *(_HERE / "laws").glob("*.py"), _HERE / "point_particle.py"]
-    files += [_HERE / f"{name}.py" for name in names]
-    digest = hashlib.sha256()
-    for path in sorted(files):
-        digest.update(f"{path.parent.name}/{path.name}\n{program(path.read_text('utf-8'))}\0".encode())
-    return digest.hexdigest()[:12]
 
 
 def _numbers(prediction: Prediction) -> dict[str, float]:

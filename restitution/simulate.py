@@ -34,6 +34,7 @@ from restitution.impacts import find_impacts
 from restitution.run_key import RunKey, run_key
 from restitution.run_progress import RunProgress
 from restitution.stokes import MEASURED_SPEEDS
+from restitution.table_writing import table_text
 from restitution.tracks import MINIMUM_FRAMES, Track
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def simulate(
     seconds = spent + time.perf_counter() - start
     contents = results(run, case, key, frames, seconds)
     if every_step:
-        contents["motion.csv"] = csv(run.motion(), "%.7g")
+        contents["motion.csv"] = table_text(run.motion(), "%.7g")
     write_folder(folder, contents)
     for name in (CHECKPOINT, IDENTITY, SO_FAR):
         (folder / name).unlink(missing_ok=True)
@@ -129,9 +130,9 @@ def results(
         "case_as_run": case.model_dump(mode="json", exclude_none=True),
     }
     return {
-        "trajectory.csv": csv(trajectory),
-        "velocity.csv": csv(velocity),
-        "impacts.csv": csv(impacts),
+        "trajectory.csv": table_text(trajectory),
+        "velocity.csv": table_text(velocity),
+        "impacts.csv": table_text(impacts),
         "run.json": json.dumps(about, indent=1) + "\n",
         "flow.npz": frames.as_bytes(),
     }
@@ -173,11 +174,6 @@ def _as_filmed(trajectory: pd.DataFrame, case: Case) -> Track:
     if len(frames) < MINIMUM_FRAMES:
         return Track.from_table(trajectory)
     return Track(frames, np.interp(frames, time, gap), "gap", record.sigma)
-
-
-def csv(table: pd.DataFrame, digits: str = "%.6g") -> str:
-    """A table as text."""
-    return table.to_csv(index=False, float_format=digits, lineterminator="\n")
 
 
 def _contact(c: SolverContact, first: float) -> dict[str, float]:
@@ -230,4 +226,4 @@ def _leave(run: ResolvedRun, key: RunKey, frames: FlowFrames, folder: Path, seco
         _checkpoint(run, key, frames, folder, seconds)
     table = run.motion().iloc[:: run.rows_apart()][["time_s", "gap_m"]]
     with suppress(InputError):  # a full disk: the error that stopped the run is the one to show
-        write_whole(folder / SO_FAR, csv(table[np.isfinite(table).all(axis=1)]))
+        write_whole(folder / SO_FAR, table_text(table[np.isfinite(table).all(axis=1)]))

@@ -14,7 +14,8 @@ from restitution.commands.simulate import show_result
 from restitution.flow_pictures import FlowFrames, Frame
 from restitution.report import fig1, fig2, point_particle
 from restitution.run_key import run_key
-from restitution.simulate import csv, simulated_impacts
+from restitution.simulate import simulated_impacts
+from restitution.table_writing import table_text
 
 FALL = 8.146
 """Free fall of the 3 mm sphere in oil, m/s2: 9.81 (7800 - 935)/(7800 + 935/2)."""
@@ -46,9 +47,9 @@ def keep(folder, name, e, current=True):
     flow = FlowFrames({m: Frame(np.outer(x, x), x, x + 1.5, 0.1, 0.0) for m in ("before", "at", "after")})
     (folder / name).mkdir(parents=True)
     files = {
-        "trajectory.csv": csv(trajectory),
-        "velocity.csv": csv(pd.DataFrame({"time_s": time, "velocity_m_s": velocity})),
-        "impacts.csv": csv(simulated_impacts(trajectory, case)[0]),
+        "trajectory.csv": table_text(trajectory),
+        "velocity.csv": table_text(pd.DataFrame({"time_s": time, "velocity_m_s": velocity})),
+        "impacts.csv": table_text(simulated_impacts(trajectory, case)[0]),
         "run.json": json.dumps(about),
     }
     for file, text in files.items():
@@ -74,7 +75,7 @@ def test_a_run_that_is_shown_has_the_apexes_of_the_report(tmp_path, capsys):
     """Rows so far apart that the highest of them is not the apex; the last flight counts, seen to come down."""
     keep(tmp_path, fig2.MAIN, 0.75)
     table = pd.read_csv(tmp_path / fig2.MAIN / "trajectory.csv").iloc[::30]
-    (tmp_path / fig2.MAIN / "trajectory.csv").write_text(csv(table))
+    (tmp_path / fig2.MAIN / "trajectory.csv").write_text(table_text(table))
     show_result(tmp_path / fig2.MAIN, case_files.read_case(fig2.MAIN))
     shown = [line.split()[-1] for line in capsys.readouterr().out.splitlines()[1:5]]
     by_hand = [1e3 * (0.75**k * 0.585) ** 2 / 2 / FALL for k in range(1, 5)]

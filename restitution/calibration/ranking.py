@@ -56,6 +56,23 @@ class Score:
 
 
 @dataclass(frozen=True)
+class Row:
+    """A law in its place: how far its elpd is behind the best law's, with the standard error of that."""
+
+    score: Score
+    best: bool
+    behind: float
+    behind_error: float
+    separated: bool
+    """Whether the data tell it from the best one."""
+
+    @property
+    def law(self) -> str:
+        """Its label."""
+        return self.score.label
+
+
+@dataclass(frozen=True)
 class Ranking:
     """Scores, best first by leave-one-out, and laws that could not be fitted with the reason."""
 
@@ -74,11 +91,18 @@ class Ranking:
             return False
         return len(better.loso) < 3 or better.elpd_loso > worse.elpd_loso
 
+    def rows(self) -> list[Row]:
+        """Every law in its place, best first."""
+        best = self.scores[0]
+        return [
+            Row(s, s is best, *self.difference(best, s), s is not best and self.separated(best, s))
+            for s in self.scores
+        ]
+
     @property
     def contenders(self) -> list[Score]:
         """The best law and those that the data do not separate from it."""
-        best = self.scores[0]
-        return [s for s in self.scores if s is best or not self.separated(best, s)]
+        return [row.score for row in self.rows() if not row.separated]
 
 
 def rank(

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from restitution.calibration.reading import Reading
     from restitution.calibration.trajectory_fit import Measured, TrajectoryFit
 
-READINGS = ("eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative")
-
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The options that belong to trajectories."""
@@ -43,6 +41,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.commands import fit as command
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
+    from restitution.laws.source_abstract_eq4 import READINGS
 
     if args.speed not in (None, "far"):
         rule = "a whole trajectory gives the speed of the motion outside the film: far"
@@ -107,15 +106,13 @@ def _rank(measured: Measured, plans: dict, how: Reading) -> str:
         o = observations(found, how)
         ranking: Ranking = rank(list(plans.items()), o)
         rows = []
-        for s in ranking.scores:
-            fit = result_of(law_fit(plans[s.label], o))
-            p = fit.parameters[0]
+        for row in ranking.rows():
+            s, p = row.score, result_of(law_fit(plans[row.law], o)).parameters[0]
             ends = [f"{a:.2f} to {b:.2f}" for a, b in p.intervals.values()]
-            gap, error = ranking.difference(ranking.scores[0], s)
-            behind = "best" if s is ranking.scores[0] else f"{gap:.1f} +- {error:.1f}"
-            apart = "yes" if s is not ranking.scores[0] and ranking.separated(ranking.scores[0], s) else ""
+            behind = "best" if row.best else f"{row.behind:.1f} +- {row.behind_error:.1f}"
             out = "" if s.elpd_loso is None else f"{s.elpd_loso:.1f}"
-            rows.append((s.label, f"{p.value:.2f}", *ends, f"{s.log_likelihood:.1f}", behind, out, apart))
+            apart = "yes" if row.separated else ""
+            rows.append((row.law, f"{p.value:.2f}", *ends, f"{s.log_likelihood:.1f}", behind, out, apart))
         show(f"{'with' if wake else 'without'} the wake of the approach, {len(o)} impacts:")
         heads = ("law", "K", "68 %", "95 %", "ln L", "elpd behind", "elpd, record out", "separated")
         show_rows(heads, rows, right=("K", "ln L"))

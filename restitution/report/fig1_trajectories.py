@@ -97,18 +97,13 @@ def in_words(t: Trajectories) -> list[str]:
         values = [
             f"{s.label} {k:.1f} ({low:.1f} to {high:.1f})" for s in ranking.scores for k, low, high in [_K(s)]
         ]
-        first, *others = ranking.scores
-        apart = [s.label for s in others if ranking.separated(first, s)]
-        near = [
-            f"{s.label} by {gap:.1f} ± {error:.1f}"
-            for s in others
-            if s.label not in apart
-            for gap, error in [ranking.difference(first, s)]
-        ]
+        first, *others = ranking.rows()
+        apart = [row.law for row in others if row.separated]
+        near = [f"{row.law} by {row.behind:.1f} ± {row.behind_error:.1f}" for row in others if not row.separated]
         tell = f"separated from it: {', '.join(apart)}" if apart else "separated from it: none"
         behind = f"; not separated: {', '.join(near)}" if near else ""
         words.append(
-            f"{MODELS[wake].capitalize()}, K (95 % interval): {'; '.join(values)}. {first.label} predicts impacts "
+            f"{MODELS[wake].capitalize()}, K (95 % interval): {'; '.join(values)}. {first.law} predicts impacts "
             f"left out best; {tell}{behind} (difference in log predictive density)."
         )
     outside = [
@@ -137,18 +132,16 @@ def table(t: Trajectories) -> list[dict]:
     """Rows of the forms for the page and the CSV file."""
     rows = []
     for wake in (True, False):
-        ranking = t.rankings[wake]
-        for s in ranking.scores:
-            gap, error = ranking.difference(ranking.scores[0], s)
-            K, low, high = _K(s)
+        for row in t.rankings[wake].rows():
+            s, (K, low, high) = row.score, _K(row.score)
             names = [p.name for p in s.fit.maximum.parameters]
             rows.append(
                 {
-                    "model": MODELS[wake], "law": s.label, "K": K, "K_low_95": low, "K_high_95": high,
+                    "model": MODELS[wake], "law": row.law, "K": K, "K_low_95": low, "K_high_95": high,
                     "scatter": float(s.fit.maximum.values[names.index("scatter")]), "impacts": len(s.loo),
-                    "log_likelihood": s.log_likelihood, "elpd_loo": s.elpd_loo, "behind_best": gap,
-                    "behind_best_error": error, "elpd_leave_record_out": s.elpd_loso,
-                    "separated_from_best": s is not ranking.scores[0] and ranking.separated(ranking.scores[0], s),
+                    "log_likelihood": s.log_likelihood, "elpd_loo": s.elpd_loo, "behind_best": row.behind,
+                    "behind_best_error": row.behind_error, "elpd_leave_record_out": s.elpd_loso,
+                    "separated_from_best": row.separated,
                 }
             )  # fmt: skip
     return rows

@@ -123,14 +123,12 @@ def table(judgements: list[Judgement]) -> list[dict]:
     rows = []
     for j in judgements:
         for kind, ranking in (("as it stands", j.held), ("K fitted", j.fitted)):
-            top = ranking.scores[0]
-            for s in ranking.scores:
-                gap, error = ranking.difference(top, s)
-                K = j.K(s.label) if kind == "K fitted" else None
+            for row in ranking.rows():
+                s, K = row.score, j.K(row.law) if kind == "K fitted" else None
                 rows.append(
                     {
                         "speed_definition": j.definition,
-                        "law": s.label,
+                        "law": row.law,
                         "parameters": kind,
                         "K": K[0] if K else None,
                         "K_low_95": K[1] if K else None,
@@ -139,11 +137,11 @@ def table(judgements: list[Judgement]) -> list[dict]:
                         "aic": s.aic,
                         "bic": s.bic,
                         "elpd_loo": s.elpd_loo,
-                        "behind_best": gap,
-                        "behind_best_error": error,
+                        "behind_best": row.behind,
+                        "behind_best_error": row.behind_error,
                         "elpd_leave_record_out": s.elpd_loso,
                         "predictive_check_p": s.check,
-                        "separated_from_best": s is not top and ranking.separated(top, s),
+                        "separated_from_best": row.separated,
                     }
                 )
     return rows

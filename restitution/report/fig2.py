@@ -23,7 +23,7 @@ from restitution.files import write_folder
 from restitution.kept_runs import KeptRun, ensure, own_runs, read_run
 from restitution.report.fig2_scores import scores
 from restitution.report.point_particle import PointLine, draw_physics, lines, physics
-from restitution.simulate import csv
+from restitution.table_writing import table_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -158,9 +158,9 @@ def write(
     files: dict[str, str | bytes] = {
         "figure.svg": figure.svg,
         "figure.png": figure.png,
-        "scores.csv": csv(fig2.scores, "%.5g"),
-        "impacts.csv": csv(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
-        "physics.csv": csv(off, "%.5g"),
+        "scores.csv": table_text(fig2.scores, "%.5g"),
+        "impacts.csv": table_text(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
+        "physics.csv": table_text(off, "%.5g"),
         "physics.png": forces.png,
         "index.html": fig2_page.render(fig2, figure, others, flow, off, forces),
     }
