@@ -9,7 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution.calibration.impact_checks import CONDITIONS, TableCheck
-from restitution.calibration.observations import WITHOUT_REBOUND, Observations
+from restitution.calibration.observations import (
+    WITHOUT_REBOUND,
+    Observations,
+    correlation_of_independent_speeds,
+)
 from restitution.calibration.reading import Reading
 from restitution.conditions import Conditions, Fluid, Sphere
 from restitution.errors import Defect, InputError
@@ -134,8 +138,7 @@ def _errors(
     use = table["e_eff"].isna().to_numpy(bool) & np.isnan(sigma)
     with np.errstate(divide="ignore", invalid="ignore"):
         from_speeds = np.hypot(s_out, e * np.nan_to_num(s_in)) / v_in
-        # rho sigma_e sigma_St = -e sigma_St^2 / St
-        rho = -e * St_sigma / (St * from_speeds)
+        rho = correlation_of_independent_speeds(e, from_speeds, St, St_sigma)
     return np.where(use, from_speeds, sigma), np.where(use & np.isnan(correlation), rho, correlation)
 
 

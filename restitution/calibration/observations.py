@@ -162,6 +162,14 @@ class Observations:
         return levels, np.array([levels.index(x) for x in self.labels[label]], int)
 
 
+def correlation_of_independent_speeds(e: NDArray, e_sigma: NDArray, St: NDArray, St_sigma: NDArray) -> NDArray:
+    """Of the errors of e = v_out/v_in and of St where those of v_in and v_out are independent.
+
+    The error of v_in moves both: rho sigma_e sigma_St = -e sigma_St^2/St.
+    """
+    return -e * St_sigma / (St * e_sigma)
+
+
 def _the_one(column: pd.Series) -> str:
     """The one value of a column that states a definition."""
     stated = column.unique()
