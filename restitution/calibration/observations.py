@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
 from restitution.errors import ConventionError, Defect, InputError
+from restitution.showing import Showing, Table, counted
 from restitution.stokes import Speed, StokesNumber
 
 if TYPE_CHECKING:
@@ -29,8 +30,8 @@ _NUMBERS = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Observations:
+@dataclass(frozen=True, repr=False)
+class Observations(Showing):
     """Arrays of length n, one element an impact.
 
     ``e`` is NaN where no rebound was seen; then e_eff was at most ``upper`` (NaN elsewhere). ``e_sigma`` is zero
@@ -111,6 +112,17 @@ class Observations:
             files=dict(files or {}),
             notes=notes,
         )
+
+    def shown(self) -> Table:
+        """How many impacts of which source, and what their numbers are."""
+        sources, group = self.groups("source")
+        rows = []
+        for i, name in enumerate(sources):
+            here, seen = self.St[group == i], ~self.censored[group == i]
+            rows.append((name, f"{seen.sum()}", f"{(~seen).sum()}", f"{here.min():.3g} to {here.max():.3g}"))
+        kind = "simulated impact" if self.simulated else "impact"
+        title = f"{counted(len(self), kind)}, Stokes number {self.convention}, impact speed {self.speed}"
+        return Table(title, ("source", "with a rebound", "without", "St"), rows)
 
     def __len__(self) -> int:
         return len(self.St)

@@ -26,6 +26,7 @@ from restitution.calibration.likelihood import OFFSET, Likelihood
 from restitution.calibration.observations import Observations
 from restitution.calibration.plan import Plan
 from restitution.errors import ConventionError, InputError
+from restitution.showing import Showing, Table, counted
 
 LEAST_DIFFERENCE, STANDARD_ERRORS = 4.0, 2.0
 REPLICATES = 1000
@@ -72,8 +73,8 @@ class Row:
         return self.score.label
 
 
-@dataclass(frozen=True)
-class Ranking:
+@dataclass(frozen=True, repr=False)
+class Ranking(Showing):
     """Scores, best first by leave-one-out, and laws that could not be fitted with the reason."""
 
     scores: tuple[Score, ...]
@@ -98,6 +99,18 @@ class Ranking:
             Row(s, s is best, *self.difference(best, s), s is not best and self.separated(best, s))
             for s in self.scores
         ]
+
+    def shown(self) -> Table:
+        """The laws, best first, and how far each is behind."""
+        rows = [
+            (row.law, f"{row.score.elpd_loo:.1f}",
+             "" if row.best else f"{row.behind:.1f} +- {row.behind_error:.1f}",
+             "yes" if row.separated else "", f"{row.score.aic:.1f}", f"{row.score.check:.2f}")
+            for row in self.rows()
+        ]  # fmt: skip
+        left_out = f"; left out: {', '.join(self.failed)}" if self.failed else ""
+        title = f"{counted(len(self.scores), 'law')} by predicting each impact from the others{left_out}"
+        return Table(title, ("law", "elpd", "behind the best", "separated", "AIC", "check p"), rows)
 
     @property
     def contenders(self) -> list[Score]:
