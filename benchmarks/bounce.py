@@ -23,14 +23,15 @@ from restitution.bounce import Closures, OwnWake, Release, bounce
 from restitution.bounce.agreement import Agreement, agreement, release_of
 from restitution.bounce.sensitivity import forces_off
 from restitution.conditions import Conditions
-from restitution.impact_speed import H_FILM
 from restitution.laws.cavitation import ATMOSPHERE
+from restitution.laws.source_abstract_eq4 import READINGS
+from restitution.stokes import H_FILM
 from restitution.tracks import Track
 
 GONDRET = ("gondret2002_st152", "gondret2002_st27")
 DROPS = tuple(f"li2012_drop{n}" for n in (1, 2, 3, 5, 6))
 REBOUND = (
-    "eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative",
+    *READINGS,
     "legendre_2005", "legendre_2006_plain_st", "two_way_lubrication", "barnocky_davis_1988", "ehd_composite",
 )  # fmt: skip
 HISTORY = ("dorgan_loth_2007", "mei_adrian_1992", "kim_1998", "basset_1888")

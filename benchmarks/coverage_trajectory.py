@@ -1,11 +1,8 @@
 """Do the intervals of ``restitution fit --trajectory`` hold what they promise? Synthetic records with known truth.
 
-A 3 mm steel sphere in oil falls steadily from 9 mm and bounces with the e of ``eq4_exponential``, K = 11, plus, in
-one case, a scatter from bounce to bounce. It is filmed every 2 ms until some time after its third bounce: with an
-error of 10 um a frame, every twentieth frame missing, the zero of the gap and the scale of the image wrong by
-0.005 d and 1 %, the clock starting anywhere, and in some cases correlated noise. The model that makes the records
-fits them; what a wrong model does is not in it. Printed are the fractions of sets whose 68 % and 95 % intervals
-contain the truth: of K, of all restitutions together, and of scale, start and clock together.
+The records are those of :mod:`restitution.calibration.synthetic_recordings`, under four sorts of noise. The model
+that makes them fits them; what a wrong model does is not in it. Printed are the fractions of sets whose 68 % and
+95 % intervals contain the truth: of K, of all restitutions together, and of scale, start and clock together.
 
     python -m benchmarks.coverage_trajectory [--sets 100] [--out benchmarks/coverage_trajectory.json]
 """
@@ -15,98 +12,36 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-from restitution import laws
-from restitution.bounce import Closures, OwnWake, Release, bounce
-from restitution.calibration.correlated_noise import draw as draw_noise
-from restitution.calibration.impact_table import Reading
 from restitution.calibration.maximum import LEVELS
 from restitution.calibration.plan import Plan
+from restitution.calibration.reading import Reading
 from restitution.calibration.rebound_model import model_of
-from restitution.calibration.recordings import Recording, recording
+from restitution.calibration.synthetic_recordings import Filming, K, draw, filmed
 from restitution.calibration.trajectory_fit import law_fit, observations
 from restitution.calibration.whole_trajectories import whole_trajectory
-from restitution.conditions import Conditions, Fluid, Sphere
-from restitution.stokes import StokesNumber
-from restitution.tracks import Track
-
-K, SPEED, GAP, SIGMA, INTERVAL = 11.0, 0.58, 9e-3, 1e-5, 2e-3
-CONDITIONS = Conditions(
-    fluid=Fluid(density=935.0, viscosity=0.010), sphere=Sphere(diameter=3e-3, density=7800.0, e_dry=0.97)
-)
-BOUNCES = 3
-
-
-@dataclass(frozen=True)
-class Case:
-    """What the frames suffer from: correlated noise of ``sigma_u_d`` diameters over ``tau_s``; scatter of e."""
-
-    name: str
-    sigma_u_d: float = 0.0
-    tau_s: float = 0.02
-    scatter: float = 0.0
-    wake: bool = False
-
 
 CASES = (
-    Case("errors of reading alone"),
-    Case("correlated noise", 0.01),
-    Case("correlated noise, slow, wake", 0.02, 0.06, 0.0, True),
-    Case("correlated noise, scatter of e", 0.01, 0.02, 0.03),
+    Filming("errors of reading alone"),
+    Filming("correlated noise", 0.01),
+    Filming("correlated noise, slow, wake", 0.02, 0.06, 0.0, True),
+    Filming("correlated noise, scatter of e", 0.01, 0.02, 0.03),
 )
 
 
-@dataclass(frozen=True)
-class Truth:
-    """What a set was made with."""
-
-    e: np.ndarray
-    speed: float
-    scale: float
-    contact_s: float
-
-
-def draw(case: Case, seed: int, conditions: Conditions = CONDITIONS) -> tuple[Track, Truth]:
-    """One record; every set has its own stream of random numbers."""
-    rng = np.random.default_rng([CASES.index(case) if case in CASES else len(CASES), seed])
-    d, law = conditions.sphere.diameter, laws.get("eq4_exponential", K=K)
-    speed, wake = SPEED * (1 + 0.02 * rng.standard_normal()), OwnWake() if case.wake else None
-    release, e = Release(GAP, speed, developed=True), []
-    for _ in range(BOUNCES):  # each impact speed follows from the bounces before it
-        path = bounce(conditions, release, Closures(measured=(*e, 0.5), wake=wake), 1.0)
-        St = StokesNumber.from_speed(path.impacts[len(e)].v_in, conditions)
-        e.append(float(law(St, conditions.sphere.e_dry)) + case.scatter * rng.standard_normal())
-    path = bounce(conditions, release, Closures(measured=tuple(e), wake=wake), 1.0)
-    last = path.impacts[BOUNCES - 1].time_s
-    own = np.arange(rng.uniform(0, INTERVAL), last + 0.6 * (path.impacts[BOUNCES].time_s - last), INTERVAL)
-    own = own[rng.random(len(own)) > 0.05]
-    scale, begin = 1 + 0.01 * rng.standard_normal(), rng.uniform(-0.1, 0.1)
-    gap = 0.005 * d * rng.standard_normal() + scale * path.gap(own)
-    gap += draw_noise(own, SIGMA, case.sigma_u_d * d, case.tau_s, rng)
-    contact = path.impacts[0].time_s
-    # The speed that the fit has is the one at its own first frame.
-    own_speed = -float(path.velocity(own[0]))
-    return Track(begin + own, gap, "gap", SIGMA), Truth(np.array(e), own_speed, scale, begin + contact)
-
-
-def filmed(track: Track, conditions: Conditions = CONDITIONS) -> Recording:
-    """The record as the fit reads it."""
-    return recording("synthetic", track, conditions)
-
-
-def one(case: Case, seed: int) -> dict[str, list]:
+def one(case: Filming, seed: int) -> dict[str, list]:
     """Whether each interval contains the truth, by level: of K, of each e, of scale, start and clock."""
-    track, truth = draw(case, seed)
+    track, truth = draw(case, np.random.default_rng([CASES.index(case), seed]))
     found = whole_trajectory(filmed(track), case.wake)
     plan = Plan(model_of("eq4_exponential"), scatter=case.scatter > 0)
     fit = law_fit(plan, observations([found], Reading()))
-    pulls = dict(zip(found.names, (found.mean - _true(found.names, truth)) / found.sigma, strict=True))
-    e = [pulls[n] for n in found.names if n.startswith("e_")]
-    other = [pulls[n] for n in found.names if n in ("scale", "contact_time_s", "release_speed_m_s")]
+    e = [(mean - true) / sigma for (mean, sigma), true in zip(found.restitutions, truth.e, strict=False)]
+    known = {"scale": truth.scale, "contact_time_s": truth.contact_s, "release_speed_m_s": truth.speed}
+    other = [(mean - known[n]) / sigma for n, (mean, sigma) in found.unknowns.items() if n in known]
     held = {"K": [], "e": [], "other": []}
     for level in LEVELS:
         low, high = fit.maximum.intervals[level][0]
@@ -123,13 +58,7 @@ def _erfinv(level: float) -> float:
     return float(erfinv(level))
 
 
-def _true(names: tuple[str, ...], truth: Truth) -> np.ndarray:
-    known = {"scale": truth.scale, "contact_time_s": truth.contact_s, "release_speed_m_s": truth.speed}
-    known |= {f"e_{n + 1}": e for n, e in enumerate(truth.e)}
-    return np.array([known.get(name, np.nan) for name in names])
-
-
-def measure(case: Case, sets: int) -> dict:
+def measure(case: Filming, sets: int) -> dict:
     """Coverage of one case."""
     results = [one(case, seed) for seed in range(sets)]
     row: dict = {"case": asdict(case), "sets": sets}

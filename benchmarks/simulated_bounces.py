@@ -9,6 +9,7 @@ as the record is, with the wake of the approach: what differs is the sphere's mo
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -23,12 +24,13 @@ from restitution.tracks import Track
 
 RECORD = "gondret2002_st152"
 CASES = ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20")
+RUNS = Path("reports/runs")
 BOUNCES = 3
 
 
 def filmed(case: str) -> Track:
     """A kept run as the record's camera would have it."""
-    run, record = read_run(read_case(case)), datasets.load_track(RECORD)
+    run, record = read_run(read_case(case), RUNS), datasets.load_track(RECORD)
     if run is None:
         raise SystemExit(f"{case}: no kept run; restitution report fig2 --full makes it")
     time, gap = (run.trajectory[name].to_numpy(float) for name in ("time_s", "gap_m"))
@@ -46,8 +48,7 @@ def main() -> None:
     tracks = {RECORD: datasets.load_track(RECORD)} | {name: filmed(name) for name in parser.parse_args().cases}
     for name, track in tracks.items():
         found = whole_trajectory(recording(name, track, conditions), True)
-        known = dict(zip(found.names, zip(found.mean, found.sigma, strict=True), strict=True))
-        shown = [known[f"e_{n}"] for n in range(1, BOUNCES + 1)] + [known["scale"]]
+        shown = [*found.restitutions[:BOUNCES], found.unknowns["scale"]]
         table.add_row(name, *(f"{m:.3f} ± {s:.3f}" for m, s in shown), f"{found.rms_d:.3f}")
     Console(width=120).print(table)
 

@@ -20,6 +20,8 @@ from restitution.tracks import Track, contacts
 
 UNTIL = 8.0
 """End of a comparison in t* = t sqrt(g/d) after the first contact."""
+LEAST_RISE_D = 1e-3
+"""A modelled sphere has come to rest once it rises by less, in diameters."""
 _FRAMES = 5
 """Frames about the highest one through which the parabola of an apex is laid."""
 
@@ -54,6 +56,11 @@ def bounces(time_s: NDArray, gap_m: NDArray, contacts_s: NDArray, resolution_m: 
             break
         apexes.append(height)
     return Bounces(time_s, gap_m, np.asarray(contacts_s), np.array(apexes))
+
+
+def modelled(time_s: NDArray, gap_m: NDArray, contacts_s: NDArray, conditions: Conditions) -> Bounces:
+    """The bounces of a computed trajectory, its contacts as the model had them."""
+    return bounces(time_s, gap_m, contacts_s, LEAST_RISE_D * conditions.sphere.diameter)
 
 
 def filmed(track: Track, conditions: Conditions, first_s: float | None = None) -> Bounces:

@@ -1,12 +1,9 @@
 """How far laws are from impacts: residuals with their full uncertainty, and scores by record.
 
-The residual of an impact is r = e_eff - f(St). Both e_eff = v_out/v_in and St carry the error of v_in, hence
-
-    var r = var e + f'^2 var St - 2 f' rho sigma_e sigma_St,
-
-f' being the exact derivative of the law and rho the correlation of the two errors. Where a table does not give
-rho, independent errors of v_in and v_out are assumed: rho sigma_e = -e sigma_St / St. Impacts without a resolved
-rebound have no residual.
+The residual of an impact is r = e_eff - f(St). Both e_eff = v_out/v_in and St carry the error of v_in; what that
+makes of the variance of r stands in :mod:`restitution.calibration.likelihood`. Where a table does not give the
+correlation of the two errors, independent errors of v_in and v_out are assumed. Impacts without a resolved rebound
+have no residual.
 """
 
 from __future__ import annotations
@@ -17,6 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.calibration.likelihood import residual_variance
+from restitution.calibration.observations import correlation_of_independent_speeds
 from restitution.laws import ReboundLaw
 from restitution.stokes import StokesNumber
 
@@ -51,8 +50,9 @@ def residuals(
     e, sigma_e = impacts["e_eff"].to_numpy(float), impacts["e_eff_sigma"].to_numpy(float)
     St, sigma_St = impacts["stokes"].to_numpy(float), impacts["stokes_sigma"].to_numpy(float)
     correlation = impacts["e_stokes_correlation"].to_numpy(float)
-    covariance = np.where(np.isnan(correlation), -e / St * sigma_St**2, correlation * sigma_e * sigma_St)
-    return e - value, np.sqrt(sigma_e**2 + (slope * sigma_St) ** 2 - 2 * slope * covariance)
+    independent = correlation_of_independent_speeds(e, sigma_e, St, sigma_St)
+    correlation = np.where(np.isnan(correlation), independent, correlation)
+    return e - value, np.sqrt(residual_variance(slope, sigma_e, sigma_St, correlation))
 
 
 def score(laws: Iterable[ReboundLaw], impacts: pd.DataFrame, conditions: Mapping[str, Conditions]) -> pd.DataFrame:

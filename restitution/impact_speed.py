@@ -5,9 +5,9 @@ The frames of the approach and of the rebound are fitted by polynomials averaged
 the slope of a branch at t_c; where a soft contact is resolved, each branch ends where its own gap is zero.
 The definitions differ in the frames that the branches are fitted to:
 
-- ``far``: frames at gaps above h_film = 0.1 d only, one cell at ten cells a diameter. It is the speed with which
-  the motion out there would meet the wall. What a film that begins at a larger gap h0 has taken by then, a
-  fraction of about ln(h0/h_film)/St, stays in it;
+- ``far``: frames at gaps above h_film = 0.1 d only (:data:`restitution.stokes.H_FILM`), one cell at ten cells a
+  diameter. It is the speed with which the motion out there would meet the wall. What a film that begins at a
+  larger gap h0 has taken by then, a fraction of about ln(h0/h_film)/St, stays in it;
 - ``contact``: all frames. Where the sampling resolves the film this is the slowed speed at the wall;
 - ``window``: the straight line through the n nearest frames on each side (default 2), no extrapolation.
 
@@ -32,8 +32,6 @@ from restitution.conditions import Conditions
 from restitution.stokes import Speed
 from restitution.tracks import DETECTION, Contact, Track
 
-H_FILM = 0.1
-"""Gap outside which the sphere counts as outside the film, in diameters."""
 DRAWS = 4000
 
 

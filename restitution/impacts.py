@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
-from restitution.impact_speed import H_FILM, SpeedMeasure, Speeds, UnresolvedError
-from restitution.stokes import Speed, convention
+from restitution.impact_speed import SpeedMeasure, Speeds, UnresolvedError
+from restitution.stokes import H_FILM, Speed, convention
 from restitution.tracks import DETECTION, Contact, Contacts, Track, contacts
 
 if TYPE_CHECKING:

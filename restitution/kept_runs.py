@@ -28,9 +28,8 @@ if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
 
-    from restitution.table_schema import TableSchema
+    from restitution.table_schema import Schema
 
-FOLDER = Path("reports/runs")
 _MEND = "delete its folder, and the report makes the run again, or leaves it out if it is not one of its figure"
 
 
@@ -62,7 +61,7 @@ class KeptRun:
         )
 
 
-def read_run(case: Case, folder: Path = FOLDER) -> KeptRun | None:
+def read_run(case: Case, folder: Path) -> KeptRun | None:
     """The kept result of a case; raises :class:`InputError` for a damaged one.
 
     None where there is none, or one of a case in an older form than can be read.
@@ -100,8 +99,10 @@ def _changed(about: RunRecord, case: Case) -> tuple[str, ...]:
     """What of case and program would give another run now than the one that is kept.
 
     A run is of the present program if its text made it, or if the program then and the program now both agree with
-    the probes of one version.
+    the probes of one version. The point-particle model takes milliseconds: its results are not kept, so never stale.
     """
+    if about.model != RESOLVED:
+        return ()
     case_changed = bool(departures(about.told, told(case)))
     same_text = about.code_hash == program_hash()
     program_changed = not same_text and (about.physics is None or about.physics != physics.agreed_version())
@@ -128,14 +129,14 @@ def _result(place: Path, case: Case, about: RunRecord, changed: tuple[str, ...] 
             defects += error.defects
     if defects:
         raise InputError(*defects, Defect(f"has damaged tables: {_MEND}", str(place)))
-    if not physics.impacts_agree() or (about.filmed and departures(about.filmed, filmed(case))):
+    if about.model == RESOLVED and (departures(about.filmed, filmed(case)) or not physics.impacts_agree()):
         tables["impacts"] = simulated_impacts(tables["trajectory"], case)[0]
     flow = FlowFrames()
     flow.read(place / "flow.npz")
     return KeptRun(case, about, **tables, flow=flow, changed=changed)
 
 
-def _table(path: Path, schema: TableSchema, may_be_empty: bool) -> pd.DataFrame:
+def _table(path: Path, schema: Schema, may_be_empty: bool) -> pd.DataFrame:
     import pandas as pd
 
     if may_be_empty and path.is_file() and len(path.read_bytes().splitlines()) < 2:
@@ -150,9 +151,7 @@ def _check_end(path: Path, time: np.ndarray, about: RunRecord) -> None:
         raise InputError(Defect(f"ends before the run, which went on to {end:.4g} s", str(path), len(time) + 1))
 
 
-def ensure(
-    case: Case, folder: Path = FOLDER, fresh: bool = False, show: Callable[[str], None] | None = None
-) -> KeptRun:
+def ensure(case: Case, folder: Path, fresh: bool = False, show: Callable[[str], None] | None = None) -> KeptRun:
     """The kept result of a case, run first where there is none that is current or ``fresh`` asks for it.
 
     A run that was stopped is continued. Errors as in :func:`restitution.simulate.simulate`.

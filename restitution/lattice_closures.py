@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from restitution import laws
 from restitution.case import Case, FilmModel
+from restitution.case_rules import ALONG
 from restitution.laws.cavitation import CavitatingFilm, film_edge
 from restitution.laws.source_abstract_eq3 import lubrication_force
 from restitution.measured_bounces import measured_restitution
@@ -21,13 +22,6 @@ from restitution.stokes import Speed, StokesNumber
 
 Normal = Callable[[float, float, float], float]
 Tangential = Callable[[float, NDArray, NDArray, NDArray], tuple[NDArray, NDArray]]
-
-ALONG = ("chaoui_feuillebois_2003", "dance_maxey_2003_rotation", "dance_maxey_2003_coupling_force")
-"""Resistances along the wall; the coupling torque is 3/4 of the coupling force, by reciprocity.
-
-Each is within 5 % of the exact table up to gap/r = 0.13, but for the coupling: 0.05, and a fifth low at 0.13.
-"""
-LARGEST_EPS = 0.13
 
 
 def normal_force(
@@ -80,7 +74,8 @@ def tangential_force(film: FilmModel, *, r: float, mu: float) -> Tangential | No
 
         F = -6 pi mu r [l_t u - r l_cf (w x n)],   T = -8 pi mu r^2 [r l_r w - 3/4 l_cf (n x u)]
 
-    u velocity and w spin along the wall, n its normal; l = law(gap/r) - law(cut_off/r), laws :data:`ALONG`.
+    u velocity and w spin along the wall, n its normal; l = law(gap/r) - law(cut_off/r), for each law of
+    :data:`~restitution.case_rules.ALONG`.
     """
     if not film.tangential:
         return None

@@ -44,7 +44,7 @@ from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.program import program_hash
 from restitution.runs.record import POINT_PARTICLE, RunRecord, SolverContact
 from restitution.stokes import StokesNumber
-from restitution.tables import csv
+from restitution.table_writing import table_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -88,12 +88,13 @@ class Prediction:
         return pd.DataFrame({"time_s": t - self.first_s, "gap_m": gap, "velocity_m_s": velocity})
 
     @property
-    def contacts(self) -> list[dict[str, float]]:
+    def contacts(self) -> tuple[SolverContact, ...]:
         """Time from the first and speeds of each contact, as in ``run.json``."""
-        return [
-            {"time_s": _g(i.time_s - self.first_s), "speed_in_m_s": _g(i.v_in), "speed_out_m_s": _g(i.v_out)}
-            for i in (self.path.impacts if self.case.contact is not None else ())
-        ]
+        impacts = self.path.impacts if self.case.contact is not None else ()
+        return tuple(
+            SolverContact(time_s=_g(i.time_s - self.first_s), speed_in_m_s=_g(i.v_in), speed_out_m_s=_g(i.v_out))
+            for i in impacts
+        )
 
 
 def row_s(case: Case) -> float:
@@ -183,13 +184,13 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
         step_s=_g(np.ptp(path.time_s) / (len(path.time_s) - 1)),  # their mean
         numbers={name: _g(value) for name, value in _numbers(prediction).items()},
         closures=path.closures.describe(),
-        contacts=tuple(SolverContact(**c) for c in prediction.contacts),
+        contacts=prediction.contacts,
         notes=(*_not_used(case), *notes),
         code_hash=program_hash(),
         filmed=filmed(case),
         case_as_run=case.model_dump(mode="json", exclude_none=True),
     )
-    contents = (csv(trajectory), csv(velocity), csv(impacts), record.text())
+    contents = (table_text(trajectory), table_text(velocity), table_text(impacts), record.text())
     write_folder(folder, dict(zip(FILES, contents, strict=True)))
 
 

@@ -34,7 +34,7 @@ from restitution.run_progress import RunProgress
 from restitution.runs import physics
 from restitution.runs.key import checkpoint_key
 from restitution.runs.results import results, trajectory_of
-from restitution.tables import csv
+from restitution.table_writing import table_text
 
 SECONDS_PER_CHECKPOINT = 30.0
 CHECKPOINT, IDENTITY, SO_FAR = "checkpoint.h5", "checkpoint.json", "trajectory_so_far.csv"
@@ -90,7 +90,7 @@ def simulate(
     seconds = spent + time.perf_counter() - start
     contents = results(run, frames, seconds)
     if every_step:
-        contents["motion.csv"] = csv(run.motion(), "%.7g")
+        contents["motion.csv"] = table_text(run.motion(), "%.7g")
     write_folder(folder, contents)
     for name in (CHECKPOINT, IDENTITY, SO_FAR):
         (folder / name).unlink(missing_ok=True)
@@ -134,4 +134,4 @@ def _leave(run: ResolvedRun, key: str, frames: FlowFrames, folder: Path, seconds
         _checkpoint(run, key, frames, folder, seconds)
     table = trajectory_of(run)
     with suppress(InputError):  # a full disk: the error that stopped the run is the one to show
-        write_whole(folder / SO_FAR, csv(table[np.isfinite(table).all(axis=1)]))
+        write_whole(folder / SO_FAR, table_text(table[np.isfinite(table).all(axis=1)]))

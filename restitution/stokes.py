@@ -39,7 +39,7 @@ class Speed(StrEnum):
     """
 
     FAR = "far"
-    """Of the motion outside the film, at gaps above 0.1 d, carried to the wall."""
+    """Of the motion outside the film, at gaps above :data:`H_FILM`, carried to the wall."""
     CONTACT = "contact"
     """The motion extrapolated to the instant of contact."""
     WINDOW = "window"
@@ -48,6 +48,12 @@ class Speed(StrEnum):
     """At the edge of the elastohydrodynamic film, the gap D*: not seen by a camera, meant by theory."""
     UNSTATED = "unstated"
     """Of a law: its source does not say which, any is taken. Of a number: nobody said."""
+
+
+MEASURED_SPEEDS = (Speed.FAR, Speed.CONTACT, Speed.WINDOW)
+"""The definitions that a track can be measured by."""
+H_FILM = 0.1
+"""Gap outside which a sphere counts as outside the film, in diameters: where the ``far`` speed is of."""
 
 
 @dataclass(frozen=True)

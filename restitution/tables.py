@@ -236,8 +236,3 @@ def _rule(error: Mapping[str, Any]) -> str:
     """What a cell should have been, from pydantic's finding."""
     rule = _RULES.get(error["type"])
     return rule.format(**error["ctx"]) if rule and "ctx" in error else rule or error["msg"]
-
-
-def csv(table: pd.DataFrame, digits: str = "%.6g") -> str:
-    """A table as text."""
-    return table.to_csv(index=False, float_format=digits, lineterminator="\n")

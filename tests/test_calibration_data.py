@@ -7,13 +7,20 @@ import numpy as np
 import pytest
 from fits import E_DRY, draw, observations, plan
 
+from restitution import datasets
 from restitution.calibration.digitizer import read_export
 from restitution.calibration.fit_result import read_fit, result_of
 from restitution.calibration.fitting import estimate
+from restitution.calibration.observations import Observations
 from restitution.calibration.parameters import Normal
+from restitution.calibration.reading import Reading
+from restitution.calibration.track_impacts import from_track
 from restitution.cli import main
 from restitution.errors import InputError
+from restitution.impacts import find_impacts
 from restitution.report import fit as report
+from restitution.stokes import Speed
+from restitution.tracks import Track
 
 
 def project(points, rotation=0.0, aligned=False):
@@ -159,3 +166,35 @@ def test_a_missing_limit_is_said_to_count_as_zero(tmp_path, capsys):
     (tmp_path / "some.csv").write_text("\n".join([header, *rows]) + "\n")
     main(["fit", str(tmp_path / "some.csv"), "--law", "eq4_exponential"])
     assert "e_eff_upper" in capsys.readouterr().out
+
+
+def test_impacts_of_ones_own_are_observations_without_a_file():
+    """Rows as found in a track; what is not stated is taken from the conditions, limits from a typical error."""
+    conditions = datasets.resource("gondret2002_st152").conditions
+    rows = find_impacts(datasets.load_track("gondret2002_st152"), conditions, record="mine").rows
+    o = Observations.from_impacts(rows, conditions)
+    seen = ~o.censored
+    assert o.convention == "st"
+    assert o.speed == "far"
+    assert set(o.labels["source"]) == {"mine"}
+    assert list(o.e[seen]) == [row["e_eff"] for row in rows if row["outcome"] == "rebound"]
+    bare = Observations.from_impacts(
+        {"stokes": [50.0, 5.0], "e_eff": [0.6, None], "e_eff_upper": [None, 0.1], "e_eff_sigma": [0.02, None],
+         "outcome": ["rebound", "no_rebound"], "stokes_convention": "st", "speed_definition": "far"},
+        conditions,
+    )  # fmt: skip
+    assert list(bare.e_dry) == [0.97, 0.97]
+    assert list(bare.e_sigma) == [0.02, 0.02]
+    assert bare.upper[1] == 0.1
+    with pytest.raises(InputError, match="stokes_convention"):
+        Observations.from_impacts([rows[0], rows[1] | {"stokes_convention": "st_star"}], conditions)
+
+
+def test_a_rebound_faster_than_its_impact_is_refused_in_ones_own_track_too():
+    conditions = datasets.resource("gondret2002_st152").conditions
+    track = datasets.load_track("gondret2002_st152")
+    after = track.time_s > 0
+    fast = Track(track.time_s, np.where(after, 4 * track.value, track.value), "gap", track.sigma)
+    with pytest.raises(InputError, match="unphysical"):
+        from_track(fast, conditions, Reading(speed=Speed.FAR), "mine.csv", "")
+    assert from_track(fast, conditions, Reading(speed=Speed.FAR, unphysical=True), "mine.csv", "").e[0] > 1

@@ -1,6 +1,7 @@
-"""Which package knows which: the solver nothing of the toolkit, the toolkit the solver in one module."""
+"""Which module knows which: the solver nothing of the toolkit, the toolkit the solver in one module."""
 
 import ast
+import importlib.util
 from pathlib import Path
 
 import pytest
@@ -9,21 +10,65 @@ import lbm
 import restitution
 
 
+def imported(path):
+    """Names of the modules that a file imports, at the top or anywhere within."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
 def importers(package, name):
-    """Modules of ``package`` that import ``name``, at the top or anywhere within."""
+    """Modules of ``package`` that import ``name``."""
     root = Path(package.__file__).parent
-    found = set()
-    for path in root.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
-            names += [node.module or ""] if isinstance(node, ast.ImportFrom) and node.level == 0 else []
-            if any(n.split(".")[0] == name for n in names):
-                found.add(path.relative_to(root).as_posix())
-    return found
+    return {
+        path.relative_to(root).as_posix()
+        for path in root.rglob("*.py")
+        if any(n.split(".")[0] == name for n in imported(path))
+    }
 
 
 @pytest.mark.parametrize(
-    ("package", "name", "allowed"), [(lbm, "restitution", set()), (restitution, "lbm", {"resolved.py"})]
+    ("package", "name", "allowed"),
+    [(lbm, "restitution", set()), (restitution, "lbm", {"resolved.py", "runs/setup.py"})],
 )
 def test_the_packages_meet_in_one_module(package, name, allowed):
     assert importers(package, name) == allowed
+
+
+def own_names():
+    """(importer, module, name) of everything that a module takes from another of the house, lazy or for types."""
+    for package in (lbm, restitution):
+        root = Path(package.__file__).parent
+        for path in root.rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in (
+                    "lbm",
+                    "restitution",
+                ):
+                    for alias in node.names:
+                        yield path.relative_to(root.parent).as_posix(), node.module, alias.name
+
+
+def is_there(module, name):
+    there = importlib.import_module(module)
+    if hasattr(there, name):
+        return True
+    return hasattr(there, "__path__") and importlib.util.find_spec(f"{module}.{name}") is not None
+
+
+def test_every_name_that_is_imported_is_there():
+    assert [entry for entry in own_names() if not is_there(*entry[1:])] == []
+
+
+def test_benchmarks_are_imported_by_nobody():
+    root = Path(__file__).parent.parent
+    files = [path for place in ("tests", "lbm", "restitution") for path in (root / place).rglob("*.py")]
+    names = {name for path in files for name in imported(path) if name.split(".")[0] == "benchmarks"}
+    assert names <= {"benchmarks.sphere_flows"}  # becomes lbm.problems.spheres
+
+
+def test_the_solver_is_tested_without_the_toolkit():
+    files = (Path(__file__).parent / "lbm").rglob("*.py")
+    assert [path.name for path in files if any(n.split(".")[0] == "restitution" for n in imported(path))] == []

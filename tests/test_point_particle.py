@@ -142,7 +142,7 @@ def test_a_case_without_contact_ends_at_the_wall(tmp_path):
     table = predict(case).table()
     assert table.time_s[0] == 0
     assert 0 <= table.gap_m.iloc[-1] < 0.02 * case.sphere.diameter
-    assert predict(case).contacts == []
+    assert predict(case).contacts == ()
 
 
 @pytest.mark.parametrize(

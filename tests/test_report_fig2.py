@@ -10,13 +10,14 @@ import pytest
 
 from restitution import case_files, datasets
 from restitution.cli import main
+from restitution.commands.simulate import show_result
 from restitution.flow_pictures import FlowFrames, Frame
 from restitution.report import fig1, fig2, point_particle
 from restitution.runs import physics
-from restitution.runs.filmed import simulated_impacts
+from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.program import program_hash
 from restitution.runs.told import told
-from restitution.tables import csv
+from restitution.table_writing import table_text
 
 FALL = 8.146
 """Free fall of the 3 mm sphere in oil, m/s2: 9.81 (7800 - 935)/(7800 + 935/2)."""
@@ -36,7 +37,7 @@ def keep(folder, name, e, current=True):
     trajectory = pd.DataFrame({"time_s": time, "gap_m": gap})
     about = {
         "physics": physics.version() if current else None, "code_hash": program_hash() if current else "0",
-        "told": told(case),
+        "told": told(case), "filmed": filmed(case),
         "case": name, "date": "2001-02-03", "finished": True, "seconds": 1.0, "threads": 1, "steps": 10,
         "shape": [8, 8, 8], "step_s": 1e-5,
         "case_as_run": case.model_dump(mode="json", exclude_none=True),
@@ -49,9 +50,9 @@ def keep(folder, name, e, current=True):
     flow = FlowFrames({m: Frame(np.outer(x, x), x, x + 1.5, 0.1, 0.0) for m in ("before", "at", "after")})
     (folder / name).mkdir(parents=True)
     files = {
-        "trajectory.csv": csv(trajectory),
-        "velocity.csv": csv(pd.DataFrame({"time_s": time, "velocity_m_s": velocity})),
-        "impacts.csv": csv(simulated_impacts(trajectory, case)[0]),
+        "trajectory.csv": table_text(trajectory),
+        "velocity.csv": table_text(pd.DataFrame({"time_s": time, "velocity_m_s": velocity})),
+        "impacts.csv": table_text(simulated_impacts(trajectory, case)[0]),
         "run.json": json.dumps(about),
     }
     for file, text in files.items():
@@ -71,6 +72,17 @@ def report(tmp_path_factory):
     assert not failed
     assert {p.name for p in (folder / "out").iterdir()} == set(files)
     return folder
+
+
+def test_a_run_that_is_shown_has_the_apexes_of_the_report(tmp_path, capsys):
+    """Rows so far apart that the highest of them is not the apex; the last flight counts, seen to come down."""
+    keep(tmp_path, fig2.MAIN, 0.75)
+    table = pd.read_csv(tmp_path / fig2.MAIN / "trajectory.csv").iloc[::30]
+    (tmp_path / fig2.MAIN / "trajectory.csv").write_text(table_text(table))
+    show_result(tmp_path / fig2.MAIN, case_files.read_case(fig2.MAIN))
+    shown = [line.split()[-1] for line in capsys.readouterr().out.splitlines()[1:5]]
+    by_hand = [1e3 * (0.75**k * 0.585) ** 2 / 2 / FALL for k in range(1, 5)]
+    assert [float(apex) for apex in shown] == pytest.approx(by_hand, abs=1e-3)
 
 
 def test_scores_of_ballistic_rebounds(report):
@@ -125,6 +137,9 @@ def test_second_report_gives_the_same_bytes(report, tmp_path):
 
 def test_page_without_verification_says_so(report, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    place = tmp_path / fig2.VERIFICATION  # which a function does not read because it stands where one stands
+    place.parent.mkdir()
+    shutil.copy(report / "sphere.json", place)
     fig2.write(tmp_path, report / "runs")
     assert "No figures are kept" in (tmp_path / "index.html").read_text()
 

@@ -14,7 +14,6 @@ from restitution.bounce.drive import Drive
 from restitution.bounce.wake import OwnWake
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
-from restitution.impact_speed import H_FILM
 from restitution.laws.brenner_1961 import Brenner1961
 from restitution.laws.cavitation import ATMOSPHERE
 from restitution.laws.drag import DragLaw, SchillerNaumann1935, steady
@@ -22,7 +21,7 @@ from restitution.laws.film import YangHunt2008
 from restitution.laws.history import DorganLoth2007, HistoryLaw
 from restitution.laws.rebound import ReboundLaw
 from restitution.laws.resistance import ResistanceLaw
-from restitution.stokes import Speed
+from restitution.stokes import H_FILM, Speed
 
 ROUGHNESS = 1e-4
 """Film limit in radii where nobody states a roughness: that of Gondret's spheres (Biegert et al. 2017)."""

@@ -18,6 +18,7 @@ from restitution.calibration.posterior import Posterior
 from restitution.calibration.rebound_model import LawModel, ReboundModel, model_of
 from restitution.calibration.residuals import Goodness, Point, goodness_of, number_or_none, points_of
 from restitution.conditions import Record
+from restitution.showing import Showing, Table, counted
 from restitution.table_schema import read_record
 
 FORMAT = "restitution-fit/1"
@@ -49,6 +50,17 @@ class Estimated(Record):
     open_ends: dict[str, tuple[bool, bool]]
     degrees_of_freedom: float | None
     """Of Student's t; None: many."""
+
+    @property
+    def shown_value(self) -> float:
+        """The value; 0 for a standard deviation that is zero but for rounding."""
+        return 0.0 if not self.mean and self.value < 1e-3 * self.intervals["95%"][1] else self.value
+
+    def interval_in_words(self, level: str) -> str:
+        """Its ends, those marked that are bounds of the parameter."""
+        low, high = self.intervals[level]
+        marks = [" (bound)" if open_end else "" for open_end in self.open_ends[level]]
+        return f"{low:.5g}{marks[0]} to {high:.5g}{marks[1]}"
 
 
 class Chain(Record):
@@ -91,7 +103,7 @@ class TrajectoryRecord(Record):
     """Of the interpolated trajectory, at most, in standard deviations of a reading."""
 
 
-class FitResult(Record):
+class FitResult(Showing, Record):
     """Everything that a prediction, a report or another program needs of a fit."""
 
     format: Literal["restitution-fit/1"] = FORMAT
@@ -117,6 +129,17 @@ class FitResult(Record):
     files: dict[str, str]
     versions: dict[str, str]
     notes: tuple[str, ...]
+
+    def shown(self) -> Table:
+        """The parameters with their intervals; :func:`restitution.calibration.fit_summary.describe` says all."""
+        rows = [
+            (p.name, f"{p.shown_value:.4g}", *(p.interval_in_words(level) for level in p.intervals))
+            for p in self.parameters
+        ]
+        levels = next((p.intervals for p in self.parameters), {})
+        impacts = counted(self.goodness.measured + self.goodness.censored, "impact")
+        title = f"{self.law.name or 'own formula'}: {self.law.text}, fitted to {impacts}"
+        return Table(title, ("parameter", "value", *levels), rows)
 
     @property
     def values(self) -> dict[str, float]:

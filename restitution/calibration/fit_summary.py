@@ -17,11 +17,10 @@ def describe(result: FitResult) -> list[tuple[str, str]]:
     facts += [(name, f"{value:g} (fixed)") for name, value in result.fixed.items()]
     for p in result.parameters:
         unit = "" if p.unit == "1" else f" {p.unit}"
-        words = ", ".join(f"{level} {_interval(p, level)}" for level in p.intervals)
+        words = ", ".join(f"{level} {p.interval_in_words(level)}" for level in p.intervals)
         prior = f"; prior {p.prior}" if p.prior.startswith("normal") else ""
-        value = 0.0 if not p.mean and p.value < 1e-3 * p.intervals["95%"][1] else p.value  # zero but for rounding
         error = f" +- {_sigma(p)}" if p.mean else ""  # of a standard deviation near zero it would mislead
-        facts.append((p.name, f"{value:.5g}{unit}{error} ({words}{prior})"))
+        facts.append((p.name, f"{p.shown_value:.5g}{unit}{error} ({words}{prior})"))
     for name, (mean, sigma) in result.offsets.items():
         facts.append(("offset", f"{name}: {mean:+.3f} +- {sigma:.3f}"))
     if g.chi_square is not None:
@@ -42,9 +41,3 @@ def describe(result: FitResult) -> list[tuple[str, str]]:
 
 def _sigma(p: Estimated) -> str:
     return "not known" if p.sigma is None else f"{p.sigma:.2g}"
-
-
-def _interval(p: Estimated, level: str) -> str:
-    low, high = p.intervals[level]
-    marks = [" (bound)" if open_end else "" for open_end in p.open_ends[level]]
-    return f"{low:.5g}{marks[0]} to {high:.5g}{marks[1]}"

@@ -15,10 +15,11 @@ from restitution.calibration.maximum import LEVELS, Maximum, Thresholds, maximis
 from restitution.calibration.observations import Observations
 from restitution.calibration.plan import Plan
 from restitution.calibration.small_sample import Restriction, threshold
+from restitution.showing import Showing, Table, counted
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, repr=False)
+class Fit(Showing):
     """An estimate with what it came from; ``freedom`` are Satterthwaite's degrees of freedom, by parameter."""
 
     plan: Plan
@@ -27,6 +28,16 @@ class Fit:
     freedom: NDArray
     restricted: bool
     notes: tuple[str, ...]
+
+    def shown(self) -> Table:
+        """The estimates with their standard errors; intervals and all else are in its result."""
+        m = self.maximum
+        cells = zip(m.parameters, m.values, m.sigma, strict=True)
+        rows = [
+            (p.name, f"{value:.4g}", f"{sigma:.2g}", "" if p.unit == "1" else p.unit) for p, value, sigma in cells
+        ]
+        title = f"fit of {self.likelihood.model.name} to {counted(len(self.likelihood.observations), 'impact')}"
+        return Table(title, ("parameter", "value", "sigma", "unit"), rows)
 
 
 def estimate(

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from restitution.errors import Defect
+from restitution.calibration.observations import Observations
+from restitution.calibration.reading import Reading
+from restitution.errors import Defect, InputError
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from restitution.calibration.impact_table import Reading
 
 CONDITIONS = ("fluid_density_kg_m3", "fluid_viscosity_Pa_s", "sphere_diameter_m", "sphere_density_kg_m3")
 NO_SPEED = (
@@ -116,4 +116,17 @@ class TableCheck:
         rule = "is given for an impact without a rebound: leave it empty and give the limit as e_eff_upper"
         self._add_all(rule, none & np.isfinite(seen) & (seen != 0), "e_eff", seen)
         if not self.how.unphysical:
-            self._add_all(_UNPHYSICAL, ((e < 0) | (e > 1)) & ~none, "e_eff", e)
+            self._add_all(_UNPHYSICAL, _outside(e) & ~none, "e_eff", e)
+
+
+def check_physical(o: Observations, how: Reading) -> Observations:
+    """The same impacts of one's own tracks; refuses those whose e_eff is not physical, unless that is waived."""
+    outside = np.flatnonzero(_outside(o.e)) if not how.unphysical else ()
+    defects = [Defect(_UNPHYSICAL, *o.places[i], "e_eff", f"{o.e[i]:g}") for i in outside]
+    if defects:
+        raise InputError(*defects)
+    return o
+
+
+def _outside(e: np.ndarray) -> np.ndarray:
+    return (e < 0) | (e > 1)

@@ -8,22 +8,30 @@ impact speed is meant is stated by columns or by the caller, never assumed.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from restitution import datasets
 from restitution.calibration.digitizer import PIXEL, is_export, read_export
-from restitution.calibration.impact_table import SCHEMA, Reading, from_table
+from restitution.calibration.impact_table import SCHEMA, from_table
 from restitution.calibration.observations import Observations, join
+from restitution.calibration.reading import Reading
 from restitution.calibration.track_impacts import from_track, from_track_file, is_track
 from restitution.errors import Defect, InputError
 from restitution.table_schema import read_schema
 from restitution.tables import examine_table, read_header
 
 
-def read(paths: list[str | Path], how: Reading) -> Observations:
-    """The impacts of all files, or of shipped records; raises :class:`InputError` with what is wrong and where."""
+def read(paths: str | Path | Sequence[str | Path], how: Reading | None = None, **stated: Any) -> Observations:
+    """The impacts of all files, or of shipped records; raises :class:`InputError` with what is wrong and where.
+
+    ``how`` the files are read may also be ``stated`` by single fields of a :class:`~.reading.Reading`, as in
+    ``read("my.csv", stokes="st", speed="far")``.
+    """
+    how = replace(how or Reading(), **stated)
+    paths = [paths] if isinstance(paths, str | Path) else paths
     parts: list[Observations] = []
     defects: list[Defect] = []
     for path in map(str, paths):

@@ -3,38 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from restitution.calibration.impact_checks import CONDITIONS, TableCheck
-from restitution.calibration.observations import Observations
+from restitution.calibration.observations import (
+    WITHOUT_REBOUND,
+    Observations,
+    correlation_of_independent_speeds,
+)
+from restitution.calibration.reading import Reading
 from restitution.conditions import Conditions, Fluid, Sphere
 from restitution.errors import Defect, InputError
-from restitution.stokes import Speed, convention
+from restitution.stokes import convention
 from restitution.table_schema import read_schema
 
 if TYPE_CHECKING:
     import pandas as pd
 
 SCHEMA = Path(__file__).with_name("measurement.json")
-_GROUPS = ("material", "record")
-
-
-@dataclass(frozen=True)
-class Reading:
-    """How files are read. ``columns`` maps columns of the schema to the files' own names."""
-
-    stokes: str | None = None
-    speed: Speed | None = None
-    columns: Mapping[str, str] = field(default_factory=dict)
-    conditions: Conditions | None = None
-    unphysical: bool = False
-    """Admit e_eff above 1 or below 0."""
-    axes: tuple[str, str] = ("stokes", "e_eff")
-    """Which columns x and y of a digitised plot are."""
 
 
 def from_table(
@@ -49,10 +38,10 @@ def from_table(
     table = table.reindex(columns=list(dict.fromkeys([*read_schema(SCHEMA).columns, *table.columns])))
     # A text column that the table lacks would be one of numbers, and take no text in its place.
     table = table.astype({f.name: object for f in read_schema(SCHEMA).fields if f.type == "string"})
-    simulated, use, selection = _selected(table, how, file)
+    use, selection = _selected(table, how, file)
     table, rows = table[use].reset_index(drop=True), rows[use]
     per_row = _row_conditions(table, how)
-    none = (table["outcome"].isin(["no_rebound", "not_resolved"])).to_numpy(bool)
+    none = table["outcome"].isin(WITHOUT_REBOUND).to_numpy(bool)
     check = TableCheck(table, how, file, rows, found)
     check.errors()
     speed, stokes = check.speed(), check.stokes(per_row)
@@ -62,42 +51,23 @@ def from_table(
         raise InputError(*sorted(check.defects, key=lambda d: d.row or 0))
     St, St_sigma = _stokes(table, stokes, per_row)
     e_sigma, correlation = _errors(table, e, St, St_sigma)
-    e = np.where(none, np.nan, e)
     notes = (
         *selection,
         *_missing_sigmas(e_sigma, none, file),
         *_limits_of_zero(none & table["e_eff_upper"].isna(), file),
-        *_zeros(e == 0, file),
+        *_zeros((e == 0) & ~none, file),
     )
-    known = e_sigma[~none & np.isfinite(e_sigma)]
-    # A limit has no error of its own; that of a typical measured impact blurs it.
-    e_sigma = np.where(np.isfinite(e_sigma), e_sigma, np.median(known) if len(known) else 0.0)
-    e_dry = table["e_dry"].to_numpy(float)
-    stated = np.array([np.nan if c is None or c.sphere.e_dry is None else c.sphere.e_dry for c in per_row])
-    labels = {"source": table["source"].fillna(table["record"]).fillna(Path(file).stem).to_numpy(object)}
-    labels |= {n: table[n].fillna("").to_numpy(object) for n in _GROUPS if table[n].notna().any()}
-    return Observations(
-        St=St,
-        St_sigma=np.nan_to_num(St_sigma),
-        e=e,
-        e_sigma=e_sigma,
-        correlation=np.where(np.isnan(correlation) | (e_sigma == 0), 0.0, correlation),
-        upper=np.where(none, table["e_eff_upper"].fillna(0.0).to_numpy(float), np.nan),
-        e_dry=np.where(np.isnan(e_dry), stated, e_dry),
-        e_dry_sigma=table["e_dry_sigma"].to_numpy(float),
-        labels=labels,
-        convention=stokes,
-        speed=Speed(speed),
-        simulated=simulated,
-        conditions=tuple(per_row),
-        places=tuple((file, int(row)) for row in rows),
-        files={file: digest},
-        notes=notes,
-    )
+    read = table.assign(
+        source=table["source"].fillna(table["record"]).fillna(Path(file).stem),
+        stokes=St, stokes_sigma=St_sigma, stokes_convention=stokes, speed_definition=speed,
+        e_eff=e, e_eff_sigma=e_sigma, e_stokes_correlation=correlation,
+    )  # fmt: skip
+    places = tuple((file, int(row)) for row in rows)
+    return Observations.from_impacts(read, per_row, places=places, files={file: digest}, notes=notes)
 
 
-def _selected(table: pd.DataFrame, how: Reading, file: str) -> tuple[bool, np.ndarray, list[str]]:
-    """Whether the impacts are simulated, which rows are taken, and what was left out in words.
+def _selected(table: pd.DataFrame, how: Reading, file: str) -> tuple[np.ndarray, list[str]]:
+    """Which rows are taken, and what was left out in words.
 
     Simulated impacts are never taken together with measured ones. Of a table under several definitions of speed,
     as this package writes them, the rows of the one that is asked for are taken.
@@ -114,7 +84,7 @@ def _selected(table: pd.DataFrame, how: Reading, file: str) -> tuple[bool, np.nd
         other = use & (stated != str(how.speed)).to_numpy(bool)
         notes.append(f"{file}: {other.sum()} impacts under other definitions than {how.speed} are left out")
         use = use & ~other
-    return every, use, notes
+    return use, notes
 
 
 def conditions_of_row(row: Mapping[str, float]) -> Conditions:
@@ -168,8 +138,7 @@ def _errors(
     use = table["e_eff"].isna().to_numpy(bool) & np.isnan(sigma)
     with np.errstate(divide="ignore", invalid="ignore"):
         from_speeds = np.hypot(s_out, e * np.nan_to_num(s_in)) / v_in
-        # rho sigma_e sigma_St = -e sigma_St^2 / St
-        rho = -e * St_sigma / (St * from_speeds)
+        rho = correlation_of_independent_speeds(e, from_speeds, St, St_sigma)
     return np.where(use, from_speeds, sigma), np.where(use & np.isnan(correlation), rho, correlation)
 
 

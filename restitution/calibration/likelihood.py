@@ -44,6 +44,12 @@ _NODES = np.linspace(-8.0, 8.0, 65)
 _LOG_T = gammaln((STUDENT + 1) / 2) - gammaln(STUDENT / 2) - 0.5 * np.log(STUDENT * np.pi)
 
 
+def residual_variance(slope: NDArray, e_sigma: NDArray, St_sigma: NDArray, correlation: NDArray) -> NDArray:
+    """Of e - f(St) by the errors of e and St: sigma_e^2 + f'^2 sigma_St^2 - 2 rho f' sigma_e sigma_St."""
+    from_St = slope * St_sigma
+    return e_sigma**2 + from_St**2 - 2 * correlation * from_St * e_sigma
+
+
 @dataclass(frozen=True)
 class Likelihood:
     """-ln L as a function of the values of ``parameters``.
@@ -99,8 +105,7 @@ class Likelihood:
         o = self.observations
         e_dry, tau, omega = given.pop("e_dry"), given.pop(SCATTER, 0.0), given.pop(OFFSET, 0.0)
         f, slope = self.model(self._St, e_dry, given)
-        from_St = slope * self._St_sigma
-        variance = o.e_sigma**2 + from_St**2 - 2 * o.correlation * from_St * o.e_sigma + tau**2
+        variance = residual_variance(slope, o.e_sigma, self._St_sigma, o.correlation) + tau**2
         return f, np.maximum(variance, _LEAST_VARIANCE), float(omega)
 
     def offsets(self, values: NDArray) -> dict[str, tuple[float, float]]:

@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
 from restitution.errors import ConventionError, Defect, InputError
+from restitution.showing import Showing, Table, counted
 from restitution.stokes import Speed, StokesNumber
 
+if TYPE_CHECKING:
+    import pandas as pd
 
-@dataclass(frozen=True)
-class Observations:
+
+WITHOUT_REBOUND = ("no_rebound", "not_resolved")
+"""Outcomes of an impact of which e_eff is known to a limit only."""
+_GROUPS = ("material", "record")
+"""Columns that become labels where a table has them, beside the source."""
+_TEXTS = ("source", *_GROUPS, "kind", "outcome", "speed_definition", "stokes_convention")
+_NUMBERS = (
+    "stokes", "stokes_sigma", "e_dry", "e_dry_sigma", "e_eff", "e_eff_sigma", "e_stokes_correlation",
+    "e_eff_upper",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, repr=False)
+class Observations(Showing):
     """Arrays of length n, one element an impact.
 
     ``e`` is NaN where no rebound was seen; then e_eff was at most ``upper`` (NaN elsewhere). ``e_sigma`` is zero
@@ -43,6 +59,70 @@ class Observations:
     notes: tuple[str, ...] = ()
     simulated: bool = False
     """Whether they come from a simulation; such ones are never joined with measured ones."""
+
+    @classmethod
+    def from_impacts(
+        cls,
+        rows: pd.DataFrame | Iterable[Mapping[str, Any]],
+        conditions: Conditions | Sequence[Conditions | None] | None = None,
+        *,
+        places: tuple[tuple[str, int], ...] = (),
+        files: Mapping[str, str] | None = None,
+        notes: tuple[str, ...] = (),
+    ) -> Observations:
+        """Impacts in the columns of the impact table, as :func:`restitution.impacts.find_impacts` gives them.
+
+        Needed are ``stokes``, ``stokes_convention``, ``speed_definition``, and ``e_eff`` or an ``outcome`` without
+        rebound; ``source`` is the ``record`` where it is not given. ``conditions`` are those of all impacts or of
+        each. A limit has no error of its own, nor has an impact that states none: that of a typical one is taken.
+        """
+        import pandas as pd
+
+        table = pd.DataFrame(rows)
+        # A text column that the rows lack would be one of numbers, and take no text in its place.
+        table = table.reindex(columns=[*_TEXTS, *_NUMBERS]).astype(dict.fromkeys(_TEXTS, object))
+        n = len(table)
+        per_row = (conditions,) * n if isinstance(conditions, Conditions | None) else tuple(conditions)
+
+        def numbers(name: str) -> NDArray:
+            return table[name].to_numpy(float)
+
+        none = table["outcome"].isin(WITHOUT_REBOUND).to_numpy(bool)
+        e_sigma, correlation, e_dry = numbers("e_eff_sigma"), numbers("e_stokes_correlation"), numbers("e_dry")
+        known = e_sigma[~none & np.isfinite(e_sigma)]
+        e_sigma = np.where(np.isfinite(e_sigma), e_sigma, np.median(known) if len(known) else 0.0)
+        stated = np.array([np.nan if c is None or c.sphere.e_dry is None else c.sphere.e_dry for c in per_row])
+        labels = {"source": table["source"].fillna(table["record"]).fillna("").to_numpy(object)}
+        labels |= {name: table[name].fillna("").to_numpy(object) for name in _GROUPS if table[name].notna().any()}
+        return cls(
+            St=numbers("stokes"),
+            St_sigma=np.nan_to_num(numbers("stokes_sigma")),
+            e=np.where(none, np.nan, numbers("e_eff")),
+            e_sigma=e_sigma,
+            correlation=np.where(np.isnan(correlation) | (e_sigma == 0), 0.0, correlation),
+            upper=np.where(none, np.nan_to_num(numbers("e_eff_upper")), np.nan),
+            e_dry=np.where(np.isnan(e_dry), stated, e_dry),
+            e_dry_sigma=numbers("e_dry_sigma"),
+            labels=labels,
+            convention=_the_one(table["stokes_convention"]),
+            speed=Speed(_the_one(table["speed_definition"])),
+            simulated=_the_one(table["kind"].fillna("measured")) == "simulated",
+            conditions=per_row,
+            places=places,
+            files=dict(files or {}),
+            notes=notes,
+        )
+
+    def shown(self) -> Table:
+        """How many impacts of which source, and what their numbers are."""
+        sources, group = self.groups("source")
+        rows = []
+        for i, name in enumerate(sources):
+            here, seen = self.St[group == i], ~self.censored[group == i]
+            rows.append((name, f"{seen.sum()}", f"{(~seen).sum()}", f"{here.min():.3g} to {here.max():.3g}"))
+        kind = "simulated impact" if self.simulated else "impact"
+        title = f"{counted(len(self), kind)}, Stokes number {self.convention}, impact speed {self.speed}"
+        return Table(title, ("source", "with a rebound", "without", "St"), rows)
 
     def __len__(self) -> int:
         return len(self.St)
@@ -92,6 +172,23 @@ class Observations:
             raise InputError(Defect(f"is not a column that groups the impacts; there are: {known}", field=label))
         levels = list(dict.fromkeys(self.labels[label]))
         return levels, np.array([levels.index(x) for x in self.labels[label]], int)
+
+
+def correlation_of_independent_speeds(e: NDArray, e_sigma: NDArray, St: NDArray, St_sigma: NDArray) -> NDArray:
+    """Of the errors of e = v_out/v_in and of St where those of v_in and v_out are independent.
+
+    The error of v_in moves both: rho sigma_e sigma_St = -e sigma_St^2/St.
+    """
+    return -e * St_sigma / (St * e_sigma)
+
+
+def _the_one(column: pd.Series) -> str:
+    """The one value of a column that states a definition."""
+    stated = column.unique()
+    if len(stated) != 1:
+        values = ", ".join(map(str, stated)) or "none"
+        raise InputError(Defect(f"must be one for all impacts; there are: {values}", field=str(column.name)))
+    return str(stated[0])
 
 
 def join(parts: list[Observations]) -> Observations:

@@ -8,7 +8,7 @@ add in squares, which is exact for normal errors. Where the fit has a posterior,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,11 +19,12 @@ from restitution.calibration.likelihood import OFFSET, SCATTER
 from restitution.calibration.maximum import LEVELS
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
+from restitution.showing import Showing, Table
 from restitution.stokes import Speed, StokesNumber
 
 
-@dataclass(frozen=True)
-class Prediction:
+@dataclass(frozen=True, repr=False)
+class Prediction(Showing):
     """Arrays over the Stokes numbers; ``law`` and ``impact`` are intervals (n, 2) by level in percent."""
 
     stokes: NDArray
@@ -33,10 +34,25 @@ class Prediction:
     impact: Mapping[str, NDArray]
     warnings: tuple[str, ...]
 
+    def shown(self) -> Table:
+        """e_eff at each Stokes number, where the law lies, and where one more impact would."""
+        intervals = {f"law, {level}": ends for level, ends in self.law.items()}
+        intervals |= {f"one impact, {level}": ends for level, ends in self.impact.items()}
+        rows = [
+            (
+                f"{St:.4g}",
+                f"{value:.3f}",
+                *(f"{ends[i][0]:.3f} to {ends[i][1]:.3f}" for ends in intervals.values()),
+            )
+            for i, (St, value) in enumerate(zip(self.stokes, self.value, strict=True))
+        ]
+        title = "\n".join(["e_eff by the fitted law", *(f"warning: {text}" for text in self.warnings)])
+        return Table(title, ("St", "e_eff", *intervals), rows)
+
 
 def predict(
     result: FitResult,
-    St: NDArray,
+    St: NDArray | Sequence[float] | float,
     e_dry: float | None = None,
     conditions: Conditions | None = None,
     levels: Mapping[str, str] | None = None,

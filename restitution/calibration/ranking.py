@@ -26,6 +26,7 @@ from restitution.calibration.likelihood import OFFSET, Likelihood
 from restitution.calibration.observations import Observations
 from restitution.calibration.plan import Plan
 from restitution.errors import ConventionError, InputError
+from restitution.showing import Showing, Table, counted
 
 LEAST_DIFFERENCE, STANDARD_ERRORS = 4.0, 2.0
 REPLICATES = 1000
@@ -56,7 +57,24 @@ class Score:
 
 
 @dataclass(frozen=True)
-class Ranking:
+class Row:
+    """A law in its place: how far its elpd is behind the best law's, with the standard error of that."""
+
+    score: Score
+    best: bool
+    behind: float
+    behind_error: float
+    separated: bool
+    """Whether the data tell it from the best one."""
+
+    @property
+    def law(self) -> str:
+        """Its label."""
+        return self.score.label
+
+
+@dataclass(frozen=True, repr=False)
+class Ranking(Showing):
     """Scores, best first by leave-one-out, and laws that could not be fitted with the reason."""
 
     scores: tuple[Score, ...]
@@ -74,11 +92,30 @@ class Ranking:
             return False
         return len(better.loso) < 3 or better.elpd_loso > worse.elpd_loso
 
+    def rows(self) -> list[Row]:
+        """Every law in its place, best first."""
+        best = self.scores[0]
+        return [
+            Row(s, s is best, *self.difference(best, s), s is not best and self.separated(best, s))
+            for s in self.scores
+        ]
+
+    def shown(self) -> Table:
+        """The laws, best first, and how far each is behind."""
+        rows = [
+            (row.law, f"{row.score.elpd_loo:.1f}",
+             "" if row.best else f"{row.behind:.1f} +- {row.behind_error:.1f}",
+             "yes" if row.separated else "", f"{row.score.aic:.1f}", f"{row.score.check:.2f}")
+            for row in self.rows()
+        ]  # fmt: skip
+        left_out = f"; left out: {', '.join(self.failed)}" if self.failed else ""
+        title = f"{counted(len(self.scores), 'law')} by predicting each impact from the others{left_out}"
+        return Table(title, ("law", "elpd", "behind the best", "separated", "AIC", "check p"), rows)
+
     @property
     def contenders(self) -> list[Score]:
         """The best law and those that the data do not separate from it."""
-        best = self.scores[0]
-        return [s for s in self.scores if s is best or not self.separated(best, s)]
+        return [row.score for row in self.rows() if not row.separated]
 
 
 def rank(

@@ -26,13 +26,13 @@ from numpy.typing import NDArray
 from restitution import datasets
 from restitution.bounce import Release, terminal_speed
 from restitution.bounce.agreement import release_reaching
-from restitution.calibration.impact_table import Reading
 from restitution.calibration.parameters import Normal
+from restitution.calibration.reading import Reading
 from restitution.calibration.recording_checks import begins_rising, bounces, check
 from restitution.calibration.track_impacts import track_of
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
-from restitution.impact_speed import H_FILM
+from restitution.stokes import H_FILM
 from restitution.tables import read_header
 from restitution.tracks import Track, contacts
 

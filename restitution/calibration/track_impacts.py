@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from restitution import datasets
-from restitution.calibration.impact_checks import CONDITIONS, NO_SPEED
-from restitution.calibration.impact_table import SCHEMA, Reading, conditions_of_row, from_table
+from restitution.calibration.impact_checks import CONDITIONS, NO_SPEED, check_physical
+from restitution.calibration.impact_table import SCHEMA, conditions_of_row
 from restitution.calibration.observations import Observations
+from restitution.calibration.reading import Reading
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.impacts import find_impacts
-from restitution.stokes import Speed
+from restitution.stokes import MEASURED_SPEEDS
 from restitution.table_schema import read_schema
 from restitution.tables import read_header, read_table
 from restitution.tracks import Track
@@ -46,7 +46,7 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
     """The impacts of one track under the stated definition of speed, which must be far, contact or window."""
     if how.speed is None:
         raise InputError(Defect(NO_SPEED, name))
-    if how.speed not in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+    if how.speed not in MEASURED_SPEEDS:
         raise InputError(
             Defect("a track gives the far, contact or window speed", name, None, "--speed", str(how.speed))
         )
@@ -54,12 +54,14 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
     found = find_impacts(track, conditions, how.speed, stokes, Path(name).stem)
     if not found.rows:
         raise InputError(Defect("no impact is resolved in this track", name))
-    how = replace(how, stokes=stokes, conditions=conditions, columns={})
-    return replace(
-        from_table(found.table().assign(source=Path(name).stem), how, name, digest),
+    o = Observations.from_impacts(
+        found.rows,
+        conditions,
         places=tuple((f"{name}, impact", int(row["impact"])) for row in found.rows),
+        files={name: digest},
         notes=tuple(f"{name}: {note}" for note in found.notes),
     )
+    return check_physical(o, how)
 
 
 def _conditions_of_track(path: str) -> Conditions:

@@ -26,7 +26,7 @@ def in_words(found: Sequence[WholeTrajectory], fit: Fit, slopes: Fit | str) -> l
 def _records(found: Sequence[WholeTrajectory]) -> Iterator[str]:
     for t in found:
         r = t.recording
-        scale = dict(zip(t.names, t.mean, strict=True))["scale"]
+        scale, _ = t.unknowns["scale"]
         if abs(scale - 1) > SCALES * r.scale:
             yield (
                 f"doubt: the gaps of {r.name} meet the model only scaled by {scale:.3f}: the scale of the record "

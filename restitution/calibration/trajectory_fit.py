@@ -7,7 +7,6 @@ stands what a slope-based one makes of the same records, and how far the model w
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -15,16 +14,16 @@ from restitution.bounce import Closures, OwnWake
 from restitution.calibration.fit_result import FitResult, TrajectoryRecord, result_of
 from restitution.calibration.fitted_law import FittedLaw
 from restitution.calibration.fitting import Fit, estimate
-from restitution.calibration.impact_table import Reading, from_table
+from restitution.calibration.impact_checks import check_physical
 from restitution.calibration.observations import Observations, join
 from restitution.calibration.plan import Plan
+from restitution.calibration.reading import Reading
 from restitution.calibration.recordings import Recording
 from restitution.calibration.track_impacts import from_track
 from restitution.calibration.trajectory_doubts import in_words
 from restitution.calibration.whole_trajectories import (
     WholeTrajectory,
     distance_d,
-    impact_table,
     whole_trajectories,
 )
 from restitution.errors import Defect, InputError
@@ -61,23 +60,19 @@ class Measured:
 
 def observations(found: Sequence[WholeTrajectory], how: Reading) -> Observations:
     """The impacts of the records for a fit, each record a source."""
-    stokes = how.stokes or "st"
-    table = impact_table(found, stokes)
-    if not (table["outcome"] == "rebound").any():
+    rows = [row for t in found for row in t.rows(how.stokes or "st")]
+    if not any(row["outcome"] == "rebound" for row in rows):
         rule = "no bounce leaves the film, 0.1 d: nothing to fit a law to"
         raise InputError(*(Defect(rule, t.recording.name) for t in found))
-    known = {t.recording.name: t.recording for t in found}
-    names = list(table["record"])
-    o = from_table(
-        table.assign(source=names), replace(how, stokes=stokes, speed=Speed.FAR), "whole trajectories", ""
+    records = {t.recording.name: t.recording for t in found}
+    o = Observations.from_impacts(
+        rows,
+        [records[row["record"]].conditions for row in rows],
+        places=tuple((f"{row['record']}, impact", int(row["impact"])) for row in rows),
+        files={name: r.digest for name, r in records.items()},
+        notes=tuple(note for r in records.values() for note in r.notes),
     )
-    return dataclasses.replace(
-        o,
-        conditions=tuple(known[name].conditions for name in names),
-        places=tuple((f"{name}, impact", int(n)) for name, n in zip(names, table["impact"], strict=True)),
-        files={name: r.digest for name, r in known.items()},
-        notes=(*o.notes, *(note for r in known.values() for note in r.notes)),
-    )
+    return check_physical(o, how)
 
 
 def slope_observations(records: Sequence[Recording], how: Reading) -> Observations:
@@ -149,7 +144,7 @@ class TrajectoryFit:
             frames=len(t.recording.time_s),
             frames_at_rest=t.recording.rest_frames,
             reading_sigma_m=t.recording.sigma,
-            unknowns={n: (float(a), float(b)) for n, a, b in zip(t.names, t.mean, t.sigma, strict=True)},
+            unknowns=t.unknowns,
             correlated_sigma_m=t.sigma_u,
             correlation_time_s=t.tau,
             log_evidence=t.log_evidence,

@@ -10,8 +10,9 @@ from rest at a known height, t_0 of the release), r a relative error of the cloc
 error of a reading, u an Ornstein-Uhlenbeck process: what the model lacks, and the drift of the camera
 (:mod:`.correlated_noise`). Frames at rest enter as their mean, b + w/sqrt(n).
 
-The unknowns eta = (b, s, t_1, r, a, e) in units of their priors have normal priors N(0, 1); that of e is wide.
-They are integrated over, the model being linear about the most probable eta (Gauss-Newton), as it is in b and s:
+The unknowns eta = (b, s, t_1, r, a, e) in units of their priors (:mod:`.unknowns`) have normal priors N(0, 1);
+that of e is wide. They are integrated over, the model being linear about the most probable eta (Gauss-Newton), as
+it is in b and s:
 
     ln L(sigma_u, tau) = -1/2 [z^T K^-1 z - g^T M^-1 g + ln|K| + ln|M| + n ln(2 pi)],
     z = y - f(eta*) + X eta*,  X = df/deta,  M = 1 + X^T K^-1 X,  g = X^T K^-1 z,  <eta> = M^-1 g.
@@ -33,11 +34,10 @@ from scipy.special import logsumexp
 from restitution.calibration.correlated_noise import gram_matrices
 from restitution.calibration.flight_map import FlightMap, Flights
 from restitution.calibration.recordings import Recording
+from restitution.calibration.unknowns import Unknowns, priors
 
 SIGMA_U = (0.1, 0.3)
 """Range of the prior of sigma_u: from this part of the reading error to this part of a diameter."""
-RESTITUTION = (0.5, 1.0)
-"""Mean and standard deviation of the prior of each e: told apart from none by no record."""
 _COARSE, _FINE = (12, 7), (11, 9)
 _MOST_STEPS = 25
 _SETTLED = 1e-3
@@ -117,29 +117,20 @@ class RecordLikelihood:
         """N."""
         return len(self.flights.centre) - 1
 
-    @property
-    def first(self) -> int:
-        """Where among the unknowns the start stands; the restitutions follow."""
-        return 4 if self.recording.clock_rate else 3
-
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Of the unknowns, with their units."""
-        r = self.recording
-        return (
-            "zero_m", "scale", "contact_time_s" if r.clock_of == "contact" else "release_time_s",
-            *(("clock_rate",) if r.clock_rate else ()), r.start.name, *(f"e_{n + 1}" for n in range(self.bounces)),
-        )  # fmt: skip
+        return tuple(priors(self.recording, self.bounces))
 
     @cached_property
     def prior(self) -> tuple[NDArray, NDArray]:
         """Mean and standard deviation of each unknown."""
-        r = self.recording
-        rate = [(0.0, r.clock_rate)] if r.clock_rate else []
-        start = (r.start.prior.mean, r.start.prior.sigma)
-        rows = [(0.0, r.level), (1.0, r.scale), (r.clock.mean, r.clock.sigma), *rate, start]
-        mean, sigma = np.array(rows + [RESTITUTION] * self.bounces).T
+        mean, sigma = np.array(list(priors(self.recording, self.bounces).values())).T
         return mean, sigma
+
+    def named(self, array: NDArray) -> Unknowns:
+        """The unknowns on the last axis of ``array`` by name."""
+        return Unknowns.of(self.recording, array)
 
     def values(self, eta: NDArray) -> NDArray:
         """The unknowns in their units."""
@@ -148,34 +139,33 @@ class RecordLikelihood:
 
     def model(self, values: NDArray) -> Flights:
         """The trajectory at given values of the unknowns."""
-        return self.flights.expand(values[self.first :])
+        return self.flights.expand(self.named(values).flight)
 
     def own_time(self, values: NDArray, flights: Flights, time: NDArray | None = None) -> NDArray:
         """The model's time of recorded ``time``, by default of the frames."""
-        rate = values[3] if self.recording.clock_rate else 0.0
-        own = ((self.recording.time_s if time is None else time) - values[2]) * (1 + rate)
+        u = self.named(values)
+        own = ((self.recording.time_s if time is None else time) - u.time) * (1 + u.rate)
         return own + (flights.contacts[1] if self.recording.clock_of == "contact" else 0.0)
 
     def predict(self, values: NDArray, time: NDArray | None = None) -> NDArray:
         """What the camera would show at ``time`` (by default its own frames), but for the noise."""
-        flights = self.model(values)
-        return values[0] + values[1] * flights(self.own_time(values, flights, time))[0]
+        u, flights = self.named(values), self.model(values)
+        return u.zero + u.scale * flights(self.own_time(values, flights, time))[0]
 
     def columns(self, values: NDArray) -> tuple[NDArray, NDArray]:
         """What the model leaves of the frames, and d f/d unknown; shapes (n,) and (n, unknowns)."""
-        flights, k = self.model(values), self.first
+        u, flights = self.named(values), self.model(values)
         h, v = flights(self.own_time(values, flights))
-        X = np.empty((len(h), len(values)))
-        X[:, 0], X[:, 1], X[:, 2] = 1.0, h, -values[1] * v * (1 + (values[3] if k == 4 else 0.0))
-        if k == 4:
-            X[:, 3] = values[1] * v * (self.recording.time_s - values[2])
-        for j in range(k, len(values)):
+        X = self.named(np.empty((len(h), len(values))))
+        X.zero[:], X.scale[:], X.time[:] = 1.0, h, -u.scale * v * (1 + u.rate)
+        if X.has_rate:
+            X.rate[:] = u.scale * v * (self.recording.time_s - u.time)
+        for j, step in enumerate(1e-3 * self.flights.steps):
             more = values.copy()
-            step = 1e-3 * self.flights.steps[j - k]
-            more[j] += step
+            self.named(more).flight[j] += step
             other = self.model(more)
-            X[:, j] = values[1] * (other(self.own_time(more, other))[0] - h) / step
-        return self.recording.gap_m - values[0] - values[1] * h, X
+            X.flight[:, j] = u.scale * (other(self.own_time(more, other))[0] - h) / step
+        return self.recording.gap_m - u.zero - u.scale * h, X.array
 
     def marginal(self) -> Marginal:
         """The unknowns integrated over."""
@@ -206,7 +196,8 @@ class RecordLikelihood:
         if not r.rest_frames:
             return 0
         row = np.zeros(gram.shape[1])
-        row[0], row[1] = r.rest_gap - level, self.prior[1][0]
+        row[0] = r.rest_gap - level
+        self.named(row[1:]).zero[...] = self.named(self.prior[1]).zero
         gram += np.outer(row, row) * r.rest_frames / r.sigma**2
         return 1
 
@@ -221,7 +212,7 @@ class RecordLikelihood:
             residual, X = self.columns(values)
             columns = np.hstack([residual[:, None], X * sigma])
             gram, _ = gram_matrices(r.time_s, columns, r.sigma, su, tau)
-            self._add_rest(gram, values[0])
+            self._add_rest(gram, self.named(values).zero)
             away = gram[0, 0, 0] + eta @ eta
             if away < best:
                 best, found = away, (eta, columns)

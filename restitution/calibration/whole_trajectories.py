@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,13 +28,10 @@ from restitution.bounce.agreement import agreement
 from restitution.calibration.flight_map import expand_about
 from restitution.calibration.recordings import Recording
 from restitution.calibration.trajectory_likelihood import Marginal, Noise, RecordLikelihood
+from restitution.calibration.unknowns import restitution_name
 from restitution.errors import Defect, InputError
-from restitution.impact_speed import H_FILM
 from restitution.impacts import find_impacts
-from restitution.stokes import Speed, convention
-
-if TYPE_CHECKING:
-    import pandas as pd
+from restitution.stokes import H_FILM, Speed, convention
 
 TOLERANCE = 1e-5
 """Relative error of an integration step; the trajectory is then within 1e-4 d of the converged one."""
@@ -72,15 +68,25 @@ class WholeTrajectory:
         return np.sqrt(np.diag(self.covariance))
 
     @property
+    def unknowns(self) -> dict[str, tuple[float, float]]:
+        """Mean and standard deviation of each unknown, by its name with its unit."""
+        return {n: (float(m), float(s)) for n, m, s in zip(self.names, self.mean, self.sigma, strict=True)}
+
+    @property
+    def restitutions(self) -> list[tuple[float, float]]:
+        """Mean and standard deviation of the e of each bounce."""
+        return [self.unknowns[restitution_name(n)] for n in range(1, self.bounces + 1)]
+
+    @property
     def bounces(self) -> int:
         """How many rebounds were seen."""
         return self.likelihood.bounces
 
     def impact_moments(self) -> tuple[NDArray, NDArray, NDArray]:
         """Impact speeds in m/s and restitutions, (bounces,) each, and their covariance, (2 bounces, 2 bounces)."""
-        k, n = self.likelihood.first, self.bounces
-        steps = self.likelihood.flights.steps
-        x = self.mean[k:]
+        n, steps = self.bounces, self.likelihood.flights.steps
+        here = self.likelihood.named(self.mean)
+        x, at = here.flight, here.flight_places
         J = np.zeros((2 * n, len(x)))
         for j, step in enumerate(0.1 * steps):
             more, less = x.copy(), x.copy()
@@ -89,7 +95,7 @@ class WholeTrajectory:
             J[:n, j] = (speeds[0] - speeds[1]) / (2 * step)
         J[n:, 1:] = np.eye(n)
         speeds = self.likelihood.flights.expand(x).impact_speed[:n]
-        return speeds, x[1:], J @ self.covariance[k:, k:] @ J.T
+        return speeds, here.e, J @ self.covariance[at, at] @ J.T
 
     def rows(self, stokes: str = "st") -> list[dict]:
         """Its impacts in the schema of the impact table; without a rebound as :mod:`restitution.impacts` has it.
@@ -128,10 +134,9 @@ class WholeTrajectory:
 
     def contact_times(self) -> NDArray:
         """Recorded times of the bounces, in s."""
-        flights = self.likelihood.model(self.mean)
+        flights, u = self.likelihood.model(self.mean), self.likelihood.named(self.mean)
         zero = flights.contacts[1] if self.recording.clock_of == "contact" else 0.0
-        rate = self.mean[3] if self.recording.clock_rate else 0.0
-        return (flights.contacts[1 : self.bounces + 1] - zero) / (1 + rate) + self.mean[2]
+        return (flights.contacts[1 : self.bounces + 1] - zero) / (1 + u.rate) + u.time
 
 
 def whole_trajectories(records: Sequence[Recording], wake: bool) -> list[WholeTrajectory]:
@@ -158,19 +163,19 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
         mean, sigma = found.prior
         if eta is None:
             values = mean.copy()
-            values[found.first :] = centre
+            found.named(values).flight[:] = centre
             eta = (values - mean) / sigma
         found = RecordLikelihood(r, flights, noise, eta).settled()
         noise, eta = found.noise, found.eta
         m = found.marginal()
-        new = found.values(m.moments()[0])[found.first :]
+        new = found.named(found.values(m.moments()[0])).flight
         moved = np.max(np.abs(new - centre) / steps)
         centre = new
         if narrow and moved < 1.5:
             break
         if moved < 1.5:
             own = found.prior[1] * np.sqrt(np.diag(m.moments()[1]))
-            steps, narrow = np.clip(own[found.first :], 0.02 * steps, steps), True
+            steps, narrow = np.clip(found.named(own).flight, 0.02 * steps, steps), True
     else:
         raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", r.name))
     return _summary(r, wake, found, m)
@@ -180,7 +185,7 @@ def _summary(r: Recording, wake: bool, found: RecordLikelihood, m: Marginal) -> 
     """The numbers, and a direct integration at the estimate."""
     eta, C = m.moments()
     values, sigma = found.values(eta), found.prior[1]
-    path = integrate(r, values[found.first :], wake)
+    path = integrate(r, found.named(values).flight, wake)
     flights = found.model(values)
     time = found.own_time(values, flights)
     inside = (time > 0) & (time < flights.contacts[-1])
@@ -256,18 +261,9 @@ def distance_d(found: WholeTrajectory, closures: Closures) -> tuple[Trajectory, 
     The clocks are brought together on the approach alone (:func:`restitution.bounce.agreement.agreement`).
     """
     r = found.recording
-    path = _fly(r, float(found.mean[found.likelihood.first]), closures)
+    path = _fly(r, float(found.likelihood.named(found.mean).start), closures)
     apexes = path.apexes()
     return path, agreement(path, r.track).rms_d, float(apexes[0]) if len(apexes) else 0.0
-
-
-def impact_table(found: Sequence[WholeTrajectory], stokes: str = "st") -> pd.DataFrame:
-    """The impacts of all records as a table with the columns of the impact schema."""
-    import pandas as pd
-
-    from restitution import datasets
-
-    return pd.DataFrame([row for t in found for row in t.rows(stokes)], columns=datasets.schema("impact").columns)
 
 
 def band(found: WholeTrajectory, time: NDArray, draws: int = 200, seed: int = 0) -> NDArray:

@@ -33,8 +33,9 @@ def run(args: argparse.Namespace) -> int | None:
 
     from restitution.bounce import IntegrationError
     from restitution.case_files import read_case
-    from restitution.commands.results import POINT_PARTICLE, folder_for, show_contacts
+    from restitution.commands.results import folder_for, show_contacts
     from restitution.point_particle import predict, write
+    from restitution.runs.record import POINT_PARTICLE
 
     case = read_case(args.case)
     folder = folder_for(args.out, f"{case.name}_point_particle", POINT_PARTICLE)

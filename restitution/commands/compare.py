@@ -11,7 +11,7 @@ from restitution.commands import fit, options
 from restitution.console import show, show_rows
 
 if TYPE_CHECKING:
-    from restitution.calibration.ranking import Ranking
+    from restitution.calibration.ranking import Ranking, Row
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -79,27 +79,20 @@ HEADINGS = (
 
 def table(ranking: Ranking) -> list[tuple[str, ...]]:
     """The ranking as cells."""
-    best, rows = ranking.scores[0], []
-    for s in ranking.scores:
-        gap, error = ranking.difference(best, s)
-        loso = "" if s.elpd_loso is None else f"{s.elpd_loso:.1f}"
-        apart = "best" if s is best else ("yes" if ranking.separated(best, s) else "no")
-        rows.append(
-            (
-                s.label,
-                str(s.parameters),
-                f"{s.log_likelihood:.1f}",
-                f"{s.aic:.1f}",
-                f"{s.bic:.1f}",
-                f"{s.elpd_loo:.1f}",
-                f"{gap:.1f}",
-                f"{error:.1f}",
-                loso,
-                f"{s.check:.2f}",
-                apart,
-            )
+    return [
+        (
+            row.law, str(s.parameters), f"{s.log_likelihood:.1f}", f"{s.aic:.1f}", f"{s.bic:.1f}",
+            f"{s.elpd_loo:.1f}", f"{row.behind:.1f}", f"{row.behind_error:.1f}",
+            "" if s.elpd_loso is None else f"{s.elpd_loso:.1f}",
+            f"{s.check:.2f}", _apart(row),
         )
-    return rows
+        for row in ranking.rows()
+        for s in [row.score]
+    ]  # fmt: skip
+
+
+def _apart(row: Row) -> str:
+    return "best" if row.best else "yes" if row.separated else "no"
 
 
 COLUMNS = (
@@ -119,17 +112,17 @@ COLUMNS = (
 
 
 def _csv(ranking: Ranking) -> str:
-    import csv
-    import io
+    from restitution.table_writing import rows_text
 
-    best, text = ranking.scores[0], io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for s, cells in zip(ranking.scores, table(ranking), strict=True):
-        numbers = (s.log_likelihood, s.aic, s.bic, s.elpd_loo, *ranking.difference(best, s))
-        loso = "" if s.elpd_loso is None else f"{s.elpd_loso:.6g}"
-        writer.writerow((s.label, s.parameters, *(f"{x:.6g}" for x in numbers), loso, f"{s.check:.3g}", cells[-1]))
-    return text.getvalue()
+    rows = [
+        (
+            row.law, s.parameters, s.log_likelihood, s.aic, s.bic, s.elpd_loo, row.behind, row.behind_error,
+            s.elpd_loso, f"{s.check:.3g}", _apart(row),
+        )
+        for row in ranking.rows()
+        for s in [row.score]
+    ]  # fmt: skip
+    return rows_text(COLUMNS, rows)
 
 
 def _show(ranking: Ranking) -> None:

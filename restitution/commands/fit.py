@@ -12,8 +12,8 @@ from restitution.commands import fit_trajectory, options
 from restitution.console import show, show_facts
 
 if TYPE_CHECKING:
-    from restitution.calibration.impact_table import Reading
     from restitution.calibration.plan import Plan
+    from restitution.calibration.reading import Reading
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -129,7 +129,7 @@ def _prior(text: str) -> tuple[str, tuple[float, float]]:
 
 def reading_of(args: argparse.Namespace) -> Reading:
     """How the files are read, from the options."""
-    from restitution.calibration.impact_table import Reading
+    from restitution.calibration.reading import Reading
     from restitution.conditions import read_conditions
     from restitution.stokes import Speed, convention
 

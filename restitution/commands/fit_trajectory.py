@@ -11,11 +11,9 @@ from restitution.console import show, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.fit_result import FitResult
-    from restitution.calibration.impact_table import Reading
     from restitution.calibration.ranking import Ranking
+    from restitution.calibration.reading import Reading
     from restitution.calibration.trajectory_fit import Measured, TrajectoryFit
-
-READINGS = ("eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -43,6 +41,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.commands import fit as command
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
+    from restitution.laws.source_abstract_eq4 import READINGS
 
     if args.speed not in (None, "far"):
         rule = "a whole trajectory gives the speed of the motion outside the film: far"
@@ -86,10 +85,9 @@ def _show_records(measured: Measured) -> None:
     for wake, found in measured.found.items():
         for t in found:
             d = t.recording.conditions.sphere.diameter
-            known = dict(zip(t.names, zip(t.mean, t.sigma, strict=True), strict=True))
-            e = ", ".join(f"{m:.3f} +- {s:.3f}" for n, (m, s) in known.items() if n.startswith("e_"))
-            start = "{} {:.4g} +- {:.2g}".format(t.recording.start.name, *known[t.recording.start.name])
-            scale = "{:.3f} +- {:.3f}".format(*known["scale"])
+            e = ", ".join(f"{mean:.3f} +- {sigma:.3f}" for mean, sigma in t.restitutions)
+            start = "{} {:.4g} +- {:.2g}".format(t.recording.start.name, *t.unknowns[t.recording.start.name])
+            scale = "{:.3f} +- {:.3f}".format(*t.unknowns["scale"])
             noise = f"{t.sigma_u[0] / d:.2g} d, {1e3 * t.tau[0]:.2g} ms"
             rows.append((t.recording.name, "yes" if wake else "no", e, start, scale, noise, f"{t.rms_d:.4f}",
                          f"{t.log_evidence:.1f}"))  # fmt: skip
@@ -108,15 +106,13 @@ def _rank(measured: Measured, plans: dict, how: Reading) -> str:
         o = observations(found, how)
         ranking: Ranking = rank(list(plans.items()), o)
         rows = []
-        for s in ranking.scores:
-            fit = result_of(law_fit(plans[s.label], o))
-            p = fit.parameters[0]
+        for row in ranking.rows():
+            s, p = row.score, result_of(law_fit(plans[row.law], o)).parameters[0]
             ends = [f"{a:.2f} to {b:.2f}" for a, b in p.intervals.values()]
-            gap, error = ranking.difference(ranking.scores[0], s)
-            behind = "best" if s is ranking.scores[0] else f"{gap:.1f} +- {error:.1f}"
-            apart = "yes" if s is not ranking.scores[0] and ranking.separated(ranking.scores[0], s) else ""
+            behind = "best" if row.best else f"{row.behind:.1f} +- {row.behind_error:.1f}"
             out = "" if s.elpd_loso is None else f"{s.elpd_loso:.1f}"
-            rows.append((s.label, f"{p.value:.2f}", *ends, f"{s.log_likelihood:.1f}", behind, out, apart))
+            apart = "yes" if row.separated else ""
+            rows.append((row.law, f"{p.value:.2f}", *ends, f"{s.log_likelihood:.1f}", behind, out, apart))
         show(f"{'with' if wake else 'without'} the wake of the approach, {len(o)} impacts:")
         heads = ("law", "K", "68 %", "95 %", "ln L", "elpd behind", "elpd, record out", "separated")
         show_rows(heads, rows, right=("K", "ln L"))

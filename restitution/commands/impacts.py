@@ -60,6 +60,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
     from restitution.impacts import find_impacts
+    from restitution.table_writing import table_text
 
     if args.template:
         _write_template(Path(args.template))
@@ -78,7 +79,7 @@ def run(args: argparse.Namespace) -> None:
     )
     table = found.table()
     if args.out:
-        write_whole(args.out, table.to_csv(index=False, float_format="%.6g", lineterminator="\n"))
+        write_whole(args.out, table_text(table))
     _show(table, found.sigma, "m" if track.quantity == "gap" else "m/s")
     for note in found.notes:
         show(f"note: {note}")
@@ -158,11 +159,12 @@ def _write_template(folder: Path) -> None:
     from restitution import datasets
     from restitution.errors import Defect, InputError
     from restitution.files import write_folder
+    from restitution.table_writing import table_text
 
     for name in ("track.csv", "conditions.toml"):
         if (folder / name).exists():
             raise InputError(Defect("exists already; a template replaces nothing", str(folder / name)))
-    track = datasets.load("gondret2002_st152").iloc[:45].to_csv(index=False, lineterminator="\n")
+    track = table_text(datasets.load("gondret2002_st152").iloc[:45], None)
     write_folder(folder, {"track.csv": track, "conditions.toml": _CONDITIONS})
     show(f"{folder / 'track.csv'}: a track, the first bounce of Gondret et al. 2002")
     show(f"{folder / 'conditions.toml'}: its conditions")

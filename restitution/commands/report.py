@@ -85,7 +85,10 @@ def run_fig2(args: argparse.Namespace) -> int:
     def say(text: str) -> None:
         print(text, file=sys.stderr)  # noqa: T201
 
-    names, failed = fig2.write(args.out, args.runs, args.checks, args.full, args.fresh, say)
+    checks = args.checks
+    if checks is None and Path(fig2.VERIFICATION).is_file():
+        checks = fig2.VERIFICATION
+    names, failed = fig2.write(args.out, args.runs, checks, args.full, args.fresh, say)
     for name in names:
         show(str(Path(args.out) / name))
     for case, why in failed.items():

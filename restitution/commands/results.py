@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from restitution.console import show, show_rows
 from restitution.errors import Defect, InputError
-from restitution.kept_runs import RESOLVED
+from restitution.runs.record import SolverContact, model_in
 
-POINT_PARTICLE = "point particle"
 _SHOWN = 12
 
 
@@ -20,25 +19,17 @@ def folder_for(given: str | None, default: str, model: str) -> Path:
     folder = Path(given or default)
     if folder.exists() and not folder.is_dir():
         raise InputError(Defect("is no folder", str(folder), None, "--out"))
-    found = _model(folder)
-    if found not in (None, model):
-        raise InputError(Defect(f"holds results of the other model, {found}: choose another folder", str(folder)))
+    other = model_in(folder)
+    if other not in (None, model):
+        raise InputError(Defect(f"holds results of the other model, {other}: choose another folder", str(folder)))
     return folder
 
 
-def _model(folder: Path) -> str | None:
-    """Which model made the results in a folder; None where there are none that can be read."""
-    try:
-        return json.loads((folder / "run.json").read_text("utf-8")).get("model", RESOLVED)
-    except (OSError, ValueError, AttributeError):
-        return None
-
-
-def show_contacts(contacts: list[dict[str, float]], apexes_mm: list[float]) -> None:
+def show_contacts(contacts: Sequence[SolverContact], apexes_mm: list[float]) -> None:
     """Print the first contacts and the height that follows each."""
     rows = [
         (
-            f"{i}", f"{c['time_s'] * 1e3:.2f}", f"{c['speed_in_m_s']:.4f}", f"{c['speed_out_m_s']:.4f}",
+            f"{i}", f"{c.time_s * 1e3:.2f}", f"{c.speed_in_m_s:.4f}", f"{c.speed_out_m_s:.4f}",
             f"{apexes_mm[i - 1]:.3f}" if i <= len(apexes_mm) else "",
         )
         for i, c in enumerate(contacts[:_SHOWN], 1)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import itertools
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from restitution.console import show
+
+if TYPE_CHECKING:
+    from restitution.case import Case
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -43,8 +46,9 @@ def run(args: argparse.Namespace) -> int | None:
     import sys
 
     from restitution.case_files import TEMPLATE, find, read_case
-    from restitution.commands.results import RESOLVED, folder_for
+    from restitution.commands.results import folder_for
     from restitution.errors import InputError, StoppedError
+    from restitution.runs.record import RESOLVED
     from restitution.simulate import CHECKPOINT, simulate
 
     if args.list:
@@ -73,7 +77,7 @@ def run(args: argparse.Namespace) -> int | None:
         if (folder / CHECKPOINT).exists():
             say(f"stopped; continue with: restitution simulate {args.case} --out {folder} --resume")
         raise
-    _report(folder)
+    show_result(folder, case)
     return None
 
 
@@ -97,16 +101,19 @@ def _write_template(case: Path, target: Path) -> None:
     show(f"{target}: next: restitution simulate {target} --out results")
 
 
-def _report(folder: Path) -> None:
-    """Print the contacts as the solver had them, the heights between them, and where the tables are."""
-    import json
+def show_result(folder: Path, case: Case) -> None:
+    """Print the contacts as the solver had them, the apexes as the report has them, and where the tables are."""
+    import numpy as np
 
-    import pandas as pd
-
+    from restitution import datasets
+    from restitution.bounces import modelled
     from restitution.commands.results import show_contacts
+    from restitution.runs.record import read_record
+    from restitution.tables import read_table
 
-    about = json.loads((folder / "run.json").read_text())
-    track, times = pd.read_csv(folder / "trajectory.csv"), [c["time_s"] for c in about["contacts"]]
-    between = [track.gap_m[(track.time_s > a) & (track.time_s < b)] for a, b in itertools.pairwise(times)]
-    show_contacts(about["contacts"], [1e3 * gap.max() for gap in between if len(gap)])
-    show(f"{about['steps']} steps in {about['seconds']:.0f} s; results in {folder}")
+    about = read_record(folder)
+    track = read_table(folder / "trajectory.csv", datasets.schema("trajectory"))
+    contacts = np.array([c.time_s for c in about.contacts])
+    flights = modelled(track.time_s.to_numpy(), track.gap_m.to_numpy(), contacts, case.conditions)
+    show_contacts(about.contacts, list(1e3 * flights.apexes_m))
+    show(f"{about.steps} steps in {about.seconds:.0f} s; results in {folder}")

@@ -116,3 +116,9 @@ class Eq4LinearRelative(_Eq4):
         CheckValue({"St": 44.6, "e_dry": 0.97}, 0.199, 6e-4, _INDEPENDENT),
     )
     K: float = _K()
+
+
+READINGS: tuple[str, ...] = tuple(
+    law.name for law in (Eq4Exponential, Eq4ExponentialOverE, Eq4Rational, Eq4Linear, Eq4LinearRelative)
+)
+"""Their names, by rank."""

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 from restitution import comparison, datasets, laws
 from restitution.files import write_folder
 from restitution.impacts import find_impacts
-from restitution.stokes import Speed
+from restitution.laws.source_abstract_eq4 import READINGS
+from restitution.stokes import MEASURED_SPEEDS, Speed
+from restitution.table_writing import records_text, table_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +32,12 @@ SIMULATED_BY_ABSTRACT = "gondret2002_st152"
 """The record whose bounces the simulation of the source abstract used ("solid squares" of its Fig. 1)."""
 _CELLS = 10
 """Cells a diameter of the simulated series, the same for all its points."""
-EQ4_READINGS = ("eq4_exponential", "eq4_exponential_over_e", "eq4_rational", "eq4_linear", "eq4_linear_relative")
+_MEASURED = "%.5g"
+"""Digits of measured values: the sixth may depend on the machine's arithmetic."""
+_ESTIMATED = "%.3g"
+"""Digits of estimates: the fourth may depend on it."""
+_SCORED = "%.2f"
+"""Digits of scores of fits, which a search for a maximum gives on any machine."""
 OTHERS = ("legendre_2005", "barnocky_davis_1988", "two_way_lubrication", "ehd_composite")
 
 
@@ -86,9 +93,9 @@ def _everything() -> tuple:
     resources = [r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory"]
     resources = [r for r in resources if r.conditions.sphere.e_dry is not None]
     conditions = {r.name: r.conditions for r in resources}
-    known = [laws.get(name) for name in (*EQ4_READINGS, *OTHERS)]
+    known = [laws.get(name) for name in (*READINGS, *OTHERS)]
     tables, scores, notes = [], [], {}
-    for definition in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+    for definition in MEASURED_SPEEDS:
         rows: list[dict] = []
         notes[str(definition)] = []
         for r in resources:
@@ -100,7 +107,7 @@ def _everything() -> tuple:
         measured = tables[-1][tables[-1].kind == "measured"]
         scores.append(comparison.score(known, measured, conditions).assign(speed_definition=str(definition)))
     every = pd.concat(tables, ignore_index=True)
-    judgements = judge(every, conditions, (*EQ4_READINGS, *OTHERS))
+    judgements = judge(every, conditions, (*READINGS, *OTHERS))
     whole = fig1_trajectories.gather([r.name for r in resources if r.kind == "measured"])
     return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements, whole
 
@@ -155,32 +162,13 @@ def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = No
     files = {
         "figure.svg": drawing.svg,
         "figure.png": drawing.png,
-        "impacts.csv": _csv(fig1.impacts),
-        "impacts_by_speed.csv": _csv(fig1.every),
-        "laws.csv": _csv(fig1.scores),
-        "readings.csv": _rounded(fig1_verdict.table(fig1.judgements)),
-        "trajectories.csv": _digits(fig1_trajectories.records(fig1.trajectories)),
-        "trajectory_readings.csv": _rounded(fig1_trajectories.table(fig1.trajectories)),
+        "impacts.csv": table_text(fig1.impacts, _MEASURED),
+        "impacts_by_speed.csv": table_text(fig1.every, _MEASURED),
+        "laws.csv": table_text(fig1.scores, _MEASURED),
+        "readings.csv": records_text(fig1_verdict.table(fig1.judgements), _SCORED),
+        "trajectories.csv": records_text(fig1_trajectories.records(fig1.trajectories), _ESTIMATED),
+        "trajectory_readings.csv": records_text(fig1_trajectories.table(fig1.trajectories), _SCORED),
         "index.html": fig1_page.render(fig1, speed, drawing.svg),
     }
     write_folder(folder, files)
     return list(files)
-
-
-def _csv(table: pd.DataFrame) -> str:
-    # Five digits: the sixth may depend on the machine's arithmetic.
-    return table.to_csv(index=False, float_format="%.5g", lineterminator="\n")
-
-
-def _digits(rows: list[dict]) -> str:
-    """Estimates to three digits: the fourth may depend on the machine's arithmetic."""
-    import pandas as pd
-
-    return pd.DataFrame(rows).to_csv(index=False, float_format="%.3g", lineterminator="\n")
-
-
-def _rounded(rows: list[dict]) -> str:
-    """Scores of fits to the digits that a search for a maximum gives on any machine."""
-    import pandas as pd
-
-    return pd.DataFrame(rows).to_csv(index=False, float_format="%.2f", lineterminator="\n")

@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from restitution import datasets, laws
-from restitution.impact_speed import H_FILM
 from restitution.impacts import find_impacts
+from restitution.laws.source_abstract_eq4 import READINGS
 from restitution.report import fig1 as content
 from restitution.report import fig1_trajectories
 from restitution.report.fig1_verdict import in_words, table
 from restitution.report.page import render as render_page
-from restitution.stokes import CONVENTIONS, Speed
+from restitution.stokes import CONVENTIONS, H_FILM, MEASURED_SPEEDS, Speed
 
 if TYPE_CHECKING:
     import pandas as pd
 
-DEFINITIONS = [str(s) for s in (Speed.FAR, Speed.CONTACT, Speed.WINDOW)]
+DEFINITIONS = [str(s) for s in MEASURED_SPEEDS]
 
 
 def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
@@ -37,7 +37,7 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         counts={d: int(overall.xs(d, level=1)["impacts"].iloc[0]) for d in DEFINITIONS},
         ranking=_ranking(overall, str(speed)),
         verdict=_verdict(overall),
-        support=in_words(fig1.judgements, content.EQ4_READINGS),
+        support=in_words(fig1.judgements, READINGS),
         judged=_judged(fig1.judgements),
         trajectory_support=fig1_trajectories.in_words(fig1.trajectories),
         trajectory_rows=fig1_trajectories.table(fig1.trajectories),
@@ -47,7 +47,7 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         spread=_spread(fig1.every),
         impacts=_impacts(fig1, str(speed)),
         notes=fig1.notes,
-        eq4=[laws.get(name) for name in content.EQ4_READINGS],
+        eq4=[laws.get(name) for name in READINGS],
         others=[laws.get(name) for name in content.OTHERS],
         conventions=list(CONVENTIONS.values()),
         film=H_FILM,
@@ -70,13 +70,13 @@ def _ranking(overall: pd.DataFrame, speed: str) -> list[tuple[str, list[dict]]]:
             "best": {d: scores["weighted_rms"][d] == best[d] for d in DEFINITIONS},
         }
 
-    groups = (("Readings of Eq. (4)", content.EQ4_READINGS), ("Other laws", content.OTHERS))
+    groups = (("Readings of Eq. (4)", READINGS), ("Other laws", content.OTHERS))
     return [(title, sorted(map(row, names), key=lambda r: r["rms"][speed])) for title, names in groups]
 
 
 def _verdict(overall: pd.DataFrame) -> str:
     """Which reading of Eq. (4) is nearest, said only as far as all definitions of speed agree."""
-    readings = overall.loc[list(content.EQ4_READINGS), "weighted_rms"].unstack()
+    readings = overall.loc[list(READINGS), "weighted_rms"].unstack()
     nearest = readings.idxmin()
     rejected = [n for n in readings.index if (readings.loc[n] > 2 * readings.min()).all()]
     if nearest.nunique() == 1:

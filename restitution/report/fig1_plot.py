@@ -9,6 +9,7 @@ import numpy as np
 from restitution import laws
 from restitution.calibration.fit_result import result_of
 from restitution.calibration.prediction import predict
+from restitution.laws.source_abstract_eq4 import READINGS
 from restitution.report.drawing import Drawing, save, style
 from restitution.stokes import Speed, StokesNumber
 
@@ -59,7 +60,7 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
         figure = Figure(figsize=(11.0, 5.6), layout="constrained")
         left, right = figure.subplots(1, 2, sharey=True)
         for ax, title, names in (
-            (left, "(a) Readings of Eq. (4) of the source abstract", content.EQ4_READINGS),
+            (left, "(a) Readings of Eq. (4) of the source abstract", READINGS),
             (right, "(b) Other laws", content.OTHERS),
         ):
             _known_without_points(ax)

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution.calibration.fit_result import result_of
-from restitution.calibration.impact_table import Reading
 from restitution.calibration.plan import Plan
 from restitution.calibration.prediction import predict
 from restitution.calibration.ranking import Ranking, Score, rank
+from restitution.calibration.reading import Reading
 from restitution.calibration.rebound_model import model_of
 from restitution.calibration.recordings import read_recordings
 from restitution.calibration.trajectory_fit import CLEAR, Measured, closures_of, observations
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from restitution.calibration.whole_trajectories import WholeTrajectory
     from restitution.conditions import Conditions
 
+BOUNCES = 3
+"""Bounces of each record whose restitution is tabulated."""
 MODELS = {True: "with the wake of the approach", False: "without the wake"}
 
 
@@ -95,18 +97,13 @@ def in_words(t: Trajectories) -> list[str]:
         values = [
             f"{s.label} {k:.1f} ({low:.1f} to {high:.1f})" for s in ranking.scores for k, low, high in [_K(s)]
         ]
-        first, *others = ranking.scores
-        apart = [s.label for s in others if ranking.separated(first, s)]
-        near = [
-            f"{s.label} by {gap:.1f} ± {error:.1f}"
-            for s in others
-            if s.label not in apart
-            for gap, error in [ranking.difference(first, s)]
-        ]
+        first, *others = ranking.rows()
+        apart = [row.law for row in others if row.separated]
+        near = [f"{row.law} by {row.behind:.1f} ± {row.behind_error:.1f}" for row in others if not row.separated]
         tell = f"separated from it: {', '.join(apart)}" if apart else "separated from it: none"
         behind = f"; not separated: {', '.join(near)}" if near else ""
         words.append(
-            f"{MODELS[wake].capitalize()}, K (95 % interval): {'; '.join(values)}. {first.label} predicts impacts "
+            f"{MODELS[wake].capitalize()}, K (95 % interval): {'; '.join(values)}. {first.law} predicts impacts "
             f"left out best; {tell}{behind} (difference in log predictive density)."
         )
     outside = [
@@ -135,18 +132,16 @@ def table(t: Trajectories) -> list[dict]:
     """Rows of the forms for the page and the CSV file."""
     rows = []
     for wake in (True, False):
-        ranking = t.rankings[wake]
-        for s in ranking.scores:
-            gap, error = ranking.difference(ranking.scores[0], s)
-            K, low, high = _K(s)
+        for row in t.rankings[wake].rows():
+            s, (K, low, high) = row.score, _K(row.score)
             names = [p.name for p in s.fit.maximum.parameters]
             rows.append(
                 {
-                    "model": MODELS[wake], "law": s.label, "K": K, "K_low_95": low, "K_high_95": high,
+                    "model": MODELS[wake], "law": row.law, "K": K, "K_low_95": low, "K_high_95": high,
                     "scatter": float(s.fit.maximum.values[names.index("scatter")]), "impacts": len(s.loo),
-                    "log_likelihood": s.log_likelihood, "elpd_loo": s.elpd_loo, "behind_best": gap,
-                    "behind_best_error": error, "elpd_leave_record_out": s.elpd_loso,
-                    "separated_from_best": s is not ranking.scores[0] and ranking.separated(ranking.scores[0], s),
+                    "log_likelihood": s.log_likelihood, "elpd_loo": s.elpd_loo, "behind_best": row.behind,
+                    "behind_best_error": row.behind_error, "elpd_leave_record_out": s.elpd_loso,
+                    "separated_from_best": row.separated,
                 }
             )  # fmt: skip
     return rows
@@ -163,16 +158,17 @@ def records(t: Trajectories) -> list[dict]:
 
 def _record(found: WholeTrajectory, wake: bool, t: Trajectories) -> dict:
     d = found.recording.conditions.sphere.diameter
-    known = dict(zip(found.names, zip(found.mean, found.sigma, strict=True), strict=True))
+    scale, scale_sigma = found.unknowns["scale"]
     shown = wake == t.measured.preferred
     rms, apex = t.distances[found.recording.name] if shown else (np.nan, np.nan)
     row = {
         "record": found.recording.name, "model": MODELS[wake], "frames": len(found.recording.time_s),
         "frames_at_rest": found.recording.rest_frames, "ln_evidence": found.log_evidence,
         "correlated_noise_d": found.sigma_u[0] / d, "correlation_time_s": found.tau[0],
-        "scale": known["scale"][0], "scale_sigma": known["scale"][1], "rms_d": found.rms_d, "rms_law_d": rms,
+        "scale": scale, "scale_sigma": scale_sigma, "rms_d": found.rms_d, "rms_law_d": rms,
         "first_apex_law_m": apex,
     }  # fmt: skip
-    for n in range(3):
-        row[f"e_{n + 1}"], row[f"e_{n + 1}_sigma"] = known.get(f"e_{n + 1}", (np.nan, np.nan))
+    e = found.restitutions + [(np.nan, np.nan)] * BOUNCES
+    for n in range(BOUNCES):
+        row[f"e_{n + 1}"], row[f"e_{n + 1}_sigma"] = e[n]
     return row

@@ -8,20 +8,17 @@ no law explains; impacts without a rebound count as limits. The scores are those
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from restitution.calibration.impact_table import Reading, from_table
+from restitution.calibration.observations import Observations
 from restitution.calibration.plan import Plan
 from restitution.calibration.ranking import Ranking, Score, rank
 from restitution.calibration.rebound_model import model_of
-from restitution.stokes import Speed
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from restitution.calibration.observations import Observations
     from restitution.conditions import Conditions
 
 FORMS = ("eq4_exponential", "eq4_rational", "eq4_linear")
@@ -51,9 +48,8 @@ class Judgement:
 
 def observations(every: pd.DataFrame, definition: str, conditions: dict[str, Conditions]) -> Observations:
     """The measured impacts under one definition of speed, each record a source."""
-    table = every[(every.speed_definition == definition) & (every.kind == "measured")].reset_index(drop=True)
-    found = from_table(table, Reading(stokes="st", speed=Speed(definition)), f"impacts, {definition}", "")
-    return dataclasses.replace(found, conditions=tuple(conditions[r] for r in table.record), files={})
+    rows = every[(every.speed_definition == definition) & (every.kind == "measured")]
+    return Observations.from_impacts(rows, [conditions[record] for record in rows.record])
 
 
 def judge(every: pd.DataFrame, conditions: dict[str, Conditions], names: tuple[str, ...]) -> list[Judgement]:
@@ -127,14 +123,12 @@ def table(judgements: list[Judgement]) -> list[dict]:
     rows = []
     for j in judgements:
         for kind, ranking in (("as it stands", j.held), ("K fitted", j.fitted)):
-            top = ranking.scores[0]
-            for s in ranking.scores:
-                gap, error = ranking.difference(top, s)
-                K = j.K(s.label) if kind == "K fitted" else None
+            for row in ranking.rows():
+                s, K = row.score, j.K(row.law) if kind == "K fitted" else None
                 rows.append(
                     {
                         "speed_definition": j.definition,
-                        "law": s.label,
+                        "law": row.law,
                         "parameters": kind,
                         "K": K[0] if K else None,
                         "K_low_95": K[1] if K else None,
@@ -143,11 +137,11 @@ def table(judgements: list[Judgement]) -> list[dict]:
                         "aic": s.aic,
                         "bic": s.bic,
                         "elpd_loo": s.elpd_loo,
-                        "behind_best": gap,
-                        "behind_best_error": error,
+                        "behind_best": row.behind,
+                        "behind_best_error": row.behind_error,
                         "elpd_leave_record_out": s.elpd_loso,
                         "predictive_check_p": s.check,
-                        "separated_from_best": s is not top and ranking.separated(top, s),
+                        "separated_from_best": row.separated,
                     }
                 )
     return rows

@@ -17,11 +17,11 @@ from restitution.bounces import Bounces, filmed
 from restitution.case import Case
 from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder
-from restitution.kept_runs import FOLDER, KeptRun, ensure, own_runs, read_run
+from restitution.kept_runs import KeptRun, ensure, own_runs, read_run
 from restitution.report.fig2_checks import Check, read_checks
 from restitution.report.fig2_scores import scores
 from restitution.report.point_particle import PointLine, draw_physics, lines, physics
-from restitution.tables import csv
+from restitution.table_writing import table_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +31,8 @@ PUBLISHED = "biegert2017_st152"
 MAIN = "gondret_st152_10"
 SHORT = ("gondret_st152_10_measured", MAIN, "gondret_st152_10_soft")
 """What the figure shows: contact modes (a), (b), (c) at ten cells a diameter."""
-VERIFICATION = Path("benchmarks/sphere.json")
+VERIFICATION = "benchmarks/sphere.json"
+"""Where a checkout keeps the solver's verification; what is read is the caller's to say."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Fig2:
 
 
 def gather(
-    runs: str | Path = FOLDER,
+    runs: str | Path,
     verification: str | Path | None = None,
     full: bool = False,
     fresh: bool = False,
@@ -106,18 +107,18 @@ def _kept(cases: dict[str, Case], folder: Path, skip: Collection[str] = ()) -> d
 
 
 def _checks(given: str | Path | None) -> list[Check]:
-    """The solver's verification; none where no file is named and the benchmarks have not been run."""
-    path = VERIFICATION if given is None else Path(given)
+    """The solver's verification; none where no file is named."""
+    if given is None:
+        return []
+    path = Path(given)
     if not path.is_file():
-        if given is None:
-            return []
         raise InputError(Defect("is no file", str(path)))
     return read_checks(path)
 
 
 def write(
     folder: str | Path,
-    runs: str | Path = FOLDER,
+    runs: str | Path,
     verification: str | Path | None = None,
     full: bool = False,
     fresh: bool = False,
@@ -137,9 +138,9 @@ def write(
     files: dict[str, str | bytes] = {
         "figure.svg": figure.svg,
         "figure.png": figure.png,
-        "scores.csv": csv(fig2.scores, "%.5g"),
-        "impacts.csv": csv(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
-        "physics.csv": csv(off, "%.5g"),
+        "scores.csv": table_text(fig2.scores, "%.5g"),
+        "impacts.csv": table_text(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
+        "physics.csv": table_text(off, "%.5g"),
         "physics.png": forces.png,
         "index.html": fig2_page.render(fig2, figure, others, flow, off, forces),
     }

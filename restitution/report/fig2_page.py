@@ -18,7 +18,7 @@ from restitution.report.fig2_sensitivity import sensitivity
 from restitution.report.fig2_solver import check, missed, numerics, older, settling
 from restitution.report.page import number, percent, png_image
 from restitution.report.page import render as render_page
-from restitution.stokes import Speed
+from restitution.stokes import MEASURED_SPEEDS, Speed
 
 if TYPE_CHECKING:
     from restitution.kept_runs import KeptRun
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from restitution.report.fig2 import Fig2
     from restitution.report.point_particle import PointLine
 
-DEFINITIONS = tuple(str(s) for s in (Speed.FAR, Speed.CONTACT, Speed.WINDOW))
+DEFINITIONS = tuple(str(s) for s in MEASURED_SPEEDS)
 
 
 def render(
@@ -64,7 +64,7 @@ def render(
         checks=[check(c) for c in fig2.checks],
         missed=missed(fig2.checks),
         older=older(fig2.checks),
-        verification=str(content.VERIFICATION),
+        verification=content.VERIFICATION,
         failed=fig2.failed,
         stale=[name for name, run in fig2.runs.items() if run.stale],
         missing=_missing(fig2),

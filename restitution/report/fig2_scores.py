@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution import datasets
-from restitution.bounces import Bounces, bounces, gap_error_d
+from restitution.bounces import Bounces, gap_error_d, modelled
 from restitution.case import Case
 from restitution.kept_runs import KeptRun
 
@@ -40,7 +40,7 @@ def of_run(run: KeptRun) -> Bounces | None:
         return None
     times = np.array([c.time_s for c in run.about.contacts])
     time, gap = (run.trajectory[name].to_numpy(float) for name in ("time_s", "gap_m"))
-    return bounces(time, gap, times, 1e-3 * run.case.sphere.diameter)
+    return modelled(time, gap, times, run.case.conditions)
 
 
 def reference_apexes(record: str, found: Bounces) -> np.ndarray:
@@ -63,7 +63,7 @@ def scores(
 
 
 def _line(line: PointLine, record: Bounces) -> dict[str, object]:
-    found = bounces(line.time_s, line.gap_m, line.contacts_s, 1e-3 * line.conditions.sphere.diameter)
+    found = modelled(line.time_s, line.gap_m, line.contacts_s, line.conditions)
     row = {
         "case": line.name,
         "record": line.record,

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.files import write_folder
+from restitution.table_writing import rows_text
 
 if TYPE_CHECKING:
     from restitution.calibration.fit_result import FitResult
@@ -84,23 +83,13 @@ def _alternative(result: FitResult) -> str:
     )
 
 
-def _table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(headings)
-    writer.writerows(
-        [["" if x is None else f"{x:.6g}" if isinstance(x, float) else x for x in row] for row in rows]
-    )
-    return text.getvalue()
-
-
 def _parameters(result: FitResult) -> str:
     headings = ("parameter", "value", "sigma", "unit", "low_68", "high_68", "low_95", "high_95", "prior")
     rows = [
         (p.name, p.value, p.sigma, p.unit, *p.intervals["68%"], *p.intervals["95%"], p.prior)
         for p in result.parameters
     ]
-    return _table(headings, rows)
+    return rows_text(headings, rows)
 
 
 def _impacts(result: FitResult) -> str:
@@ -118,4 +107,4 @@ def _impacts(result: FitResult) -> str:
         "sigma",
         "pull",
     )
-    return _table(columns, [[getattr(p, name) for name in columns] for p in result.points])
+    return rows_text(columns, [[getattr(p, name) for name in columns] for p in result.points])

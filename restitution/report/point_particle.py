@@ -120,8 +120,8 @@ def fitted_K() -> tuple[float, float, float]:
 
     Three digits: the fourth may depend on the machine's arithmetic.
     """
-    from restitution.calibration.impact_table import Reading
     from restitution.calibration.plan import Plan
+    from restitution.calibration.reading import Reading
     from restitution.calibration.rebound_model import model_of
     from restitution.calibration.recordings import read_recordings
     from restitution.calibration.trajectory_fit import Measured, law_fit, observations

@@ -9,7 +9,7 @@ import numpy as np
 from restitution import datasets
 from restitution.case import Case
 from restitution.impacts import find_impacts
-from restitution.stokes import Speed
+from restitution.stokes import MEASURED_SPEEDS
 from restitution.tracks import MINIMUM_FRAMES, Track
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def simulated_impacts(trajectory: pd.DataFrame, case: Case) -> tuple[pd.DataFram
         return pd.DataFrame(columns=columns), []
     track = _as_filmed(trajectory, case)
     rows, notes = [], []
-    for speed in (Speed.FAR, Speed.CONTACT, Speed.WINDOW):
+    for speed in MEASURED_SPEEDS:
         found = find_impacts(track, case.conditions, speed, record=case.name, kind="simulated")
         rows += found.rows
         notes += [f"{speed}: {note}" for note in found.notes]

@@ -71,7 +71,7 @@ def _lines(value: Any) -> str:
     return json.dumps(value)
 
 
-def read_record(folder: Path, mend: str) -> RunRecord | None:
+def read_record(folder: Path, mend: str = "run the case again") -> RunRecord | None:
     """The record of the run in ``folder``; None where there is none.
 
     Raises :class:`InputError`, which says how to ``mend`` it, for one that is damaged or of an unfinished run.
@@ -86,3 +86,11 @@ def read_record(folder: Path, mend: str) -> RunRecord | None:
     if not record.finished:
         raise InputError(Defect(f"is of a run that did not finish: {mend}", str(path)))
     return record
+
+
+def model_in(folder: Path) -> str | None:
+    """Which model made the results in a folder, damaged or not; None where there are none."""
+    try:
+        return json.loads((folder / FILE).read_text("utf-8")).get("model", RESOLVED)
+    except (OSError, ValueError, AttributeError):
+        return None

@@ -12,7 +12,7 @@ from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.program import program_hash
 from restitution.runs.record import FILE, RunRecord, SolverContact
 from restitution.runs.told import told
-from restitution.tables import csv
+from restitution.table_writing import table_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,9 +45,9 @@ def results(run: ResolvedRun, frames: FlowFrames, seconds: float) -> dict[str, s
         case_as_run=case.model_dump(mode="json", exclude_none=True),
     )
     return {
-        "trajectory.csv": csv(trajectory),
-        "velocity.csv": csv(velocity),
-        "impacts.csv": csv(impacts),
+        "trajectory.csv": table_text(trajectory),
+        "velocity.csv": table_text(velocity),
+        "impacts.csv": table_text(impacts),
         FILE: record.text(),
         "flow.npz": frames.as_bytes(),
     }

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import lbm
 from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
@@ -17,8 +18,8 @@ from lbm.rates import PRESETS
 from lbm.scales import FlowScales
 from lbm.spheres import Sphere, Spheres
 from restitution.case import Case
-from restitution.impact_speed import H_FILM
 from restitution.lattice_closures import Normal, Tangential, normal_force, rebound, tangential_force
+from restitution.stokes import H_FILM
 
 OUTPUT_D = 0.04
 """Way in diameters that the reference speed makes between two rows of a trajectory."""
@@ -45,9 +46,21 @@ class Setup:
         """Steps between two rows of a trajectory."""
         return max(1, round(OUTPUT_D * self.flow.length / self.flow.speed))
 
-    def build(self) -> tuple[lbm.Simulation, Spheres]:
-        """The simulation with its sphere, ready to run."""
-        spheres = Spheres(
+    def describe(self) -> dict[str, Any]:
+        """What is told, by name: numbers and words, functions by what they give at some arguments."""
+        return {
+            "box": self.shape,
+            "faces": self.faces,
+            "precision": self.precision,
+            "rates": self.rates.diagonal().tolist(),
+            "cell_m, step_s, density": [self.flow.scales.unit(q) for q in ("length", "time", "density")],
+            "start": self.sphere.position,
+            "sphere": self.spheres().describe(),
+        }
+
+    def spheres(self) -> Spheres:
+        """The sphere with all that acts on it, where it starts."""
+        return Spheres(
             [self.sphere],
             gravity=(0.0, 0.0, -self.gravity),
             film=self.film,
@@ -55,6 +68,10 @@ class Setup:
             drive=self.drive,
             interpolation=self.interpolation,
         )
+
+    def build(self) -> tuple[lbm.Simulation, Spheres]:
+        """The simulation with its sphere, ready to run."""
+        spheres = self.spheres()
         simulation = lbm.Simulation(self.shape, self.rates, faces=self.faces, dtype=self.precision)
         simulation.add(spheres)
         return simulation, spheres

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.impulsive_start import exact, excess
+from lbm.impulsive_start import exact, excess
 
 
 def test_the_lattice_gives_added_mass_and_history_and_the_closer_the_finer():

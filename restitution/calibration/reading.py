@@ -1,0 +1,27 @@
+"""How files are read for a fit: what their numbers mean where they do not say so themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from restitution.conditions import Conditions
+from restitution.stokes import Speed
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Definitions and conditions for all files of a fit. ``columns`` maps columns of the schema to the files' own.
+
+    ``stokes`` is the convention of the Stokes number, ``speed`` the definition of the impact speed; None: the
+    files state it.
+    """
+
+    stokes: str | None = None
+    speed: Speed | None = None
+    columns: Mapping[str, str] = field(default_factory=dict)
+    conditions: Conditions | None = None
+    unphysical: bool = False
+    """Admit e_eff above 1 or below 0."""
+    axes: tuple[str, str] = ("stokes", "e_eff")
+    """Which columns x and y of a digitised plot are."""
