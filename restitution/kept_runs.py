@@ -99,7 +99,7 @@ def _changed(about: RunRecord, case: Case) -> tuple[str, ...]:
     """What of case and program would give another run now than the one that is kept.
 
     A run is of the present program if its text made it, or if the program then and the program now both agree with
-    the probes of one version. The point-particle model takes milliseconds: its results are not kept, so never stale.
+    the probes of one version. A result of the point-particle model, which takes milliseconds, is never stale.
     """
     if about.model != RESOLVED:
         return ()
