@@ -1,7 +1,7 @@
-"""A trajectory bounce by bounce: times of contact, apex heights, and how far one trajectory is from another.
+"""A trajectory bounce by bounce: times of contact and apex heights, recorded or modelled alike.
 
-Trajectories are compared from their own first contacts on, without a shift that could be chosen. Where a contact
-is stretched in time it is counted from its end, when the rebound begins.
+Where a contact is stretched in time it is counted from its end, when the rebound begins. How far one trajectory is
+from another stands in :mod:`restitution.bounce.agreement`.
 """
 
 from __future__ import annotations
@@ -18,8 +18,6 @@ from restitution.impacts import find_impacts
 from restitution.stokes import Speed
 from restitution.tracks import Track, contacts
 
-UNTIL = 8.0
-"""End of a comparison in t* = t sqrt(g/d) after the first contact."""
 LEAST_RISE_D = 1e-3
 """A modelled sphere has come to rest once it rises by less, in diameters."""
 _FRAMES = 5
@@ -88,21 +86,6 @@ def _touch(track: Track, frame: int) -> float:
     return (
         float(t1 + max(h1, 0.0) * (t1 - t0) / (h0 - h1)) if frame > 0 and h0 > h1 else float(track.time_s[frame])
     )
-
-
-def gap_error_d(model: Bounces, record: Bounces, conditions: Conditions, until: float = UNTIL) -> float:
-    """Root mean square of the model's gap less the record's, in d, over the frames in 0 <= t* <= ``until``.
-
-    NaN where the model ends before the record does, up to ``until``.
-    """
-    d = conditions.sphere.diameter
-    after = record.time_s - record.contacts_s[0]
-    use = (after >= 0) & (after * math.sqrt(conditions.gravity / d) <= until)
-    time = after[use] + model.contacts_s[0]
-    if len(time) == 0 or model.time_s[-1] < time[-1]:
-        return math.nan
-    error = np.interp(time, model.time_s, model.gap_m) - record.gap_m[use]
-    return float(np.sqrt(np.mean(error**2)) / d)
 
 
 def frame_velocity(track: Track, contacts_s: NDArray) -> tuple[NDArray, NDArray, float]:

@@ -21,13 +21,11 @@ class Table:
             return self.title
         cells = [tuple(self.headings), *map(tuple, self.rows)]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        lines = [
-            "  ".join(
-                c.ljust(w) if not i else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
-            )
-            for row in cells
-        ]
-        return "\n".join([self.title, *(f"  {line.rstrip()}" for line in lines)])
+        lines = [self.title]
+        for first, *others in cells:
+            right = [cell.rjust(width) for cell, width in zip(others, widths[1:], strict=True)]
+            lines.append("  ".join(["", first.ljust(widths[0]), *right]).rstrip())
+        return "\n".join(lines)
 
     def html(self) -> str:
         """A table for a notebook."""

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from restitution import datasets
-from restitution.bounces import bounces, filmed, frame_velocity, gap_error_d
+from restitution.bounce import Closures, Release, bounce
+from restitution.bounce.agreement import agreement, distance_from_contact_d
+from restitution.bounces import bounces, filmed, frame_velocity
 from restitution.tracks import Track
 
 G = 8.0
@@ -40,7 +42,7 @@ def test_error_of_a_trajectory_that_is_scaled():
     time, gap, contacts = ballistic([0.4])
     record = bounces(time, gap, contacts)
     model = bounces(time + 0.3, gap + 0.1 * conditions.sphere.diameter, contacts + 0.3)
-    assert gap_error_d(model, record, conditions) == pytest.approx(0.1, rel=1e-6)
+    assert distance_from_contact_d(model, record, conditions) == pytest.approx(0.1, rel=1e-6)
 
 
 def test_a_model_that_ends_early_has_no_error():
@@ -48,8 +50,26 @@ def test_a_model_that_ends_early_has_no_error():
     time, gap, contacts = ballistic([0.4])
     half = time < 0.05
     assert np.isnan(
-        gap_error_d(bounces(time[half], gap[half], contacts), bounces(time, gap, contacts), conditions)
+        distance_from_contact_d(bounces(time[half], gap[half], contacts), bounces(time, gap, contacts), conditions)
     )
+
+
+def test_a_contact_that_lasts_is_an_error_by_the_clock_of_the_approach_alone():
+    """The record is the model's own flight, its rebound 1 ms late: v times 1 ms apart, or nothing."""
+    conditions, late = datasets.resource("gondret2002_st152").conditions, 1e-3
+    path = bounce(conditions, Release(9e-3, 0.586), Closures(measured=(0.8,)), end=0.2)
+    touch = path.impacts[0].time_s
+    time = np.arange(0.0, touch + 0.1, 5e-4)
+    gap = np.where(time < touch, path.gap(time), path.gap(np.maximum(time - late, touch)))
+    record = bounces(time, gap, np.array([touch + late]))
+    fine = np.linspace(0.0, 0.2, 4001)
+    model = bounces(fine, path.gap(fine), np.array([touch]))
+    assert distance_from_contact_d(model, record, conditions) < 1e-3
+    found = agreement(path, Track(time, gap, "gap", 1e-6))
+    after = found.time_s + touch
+    apart = path.gap(after) - path.gap(np.maximum(after - late, touch))
+    assert found.rms_d == pytest.approx(np.sqrt(np.mean(apart**2)) / conditions.sphere.diameter, rel=0.02)
+    assert found.rms_d > 0.03
 
 
 @pytest.mark.parametrize(("case", "rms", "apex"), [("st152", 0.046, -0.018), ("st27", 0.0070, -0.006)])
@@ -58,7 +78,7 @@ def test_published_simulation_is_as_far_from_the_record_as_was_found_independent
     record, published = (datasets.resource(f"{name}_{case}") for name in ("gondret2002", "biegert2017"))
     measured = filmed(datasets.load_track(record.name), record.conditions)
     simulated = filmed(datasets.load_track(published.name), record.conditions, 0.0)
-    assert gap_error_d(simulated, measured, record.conditions) == pytest.approx(rms, abs=5e-4)
+    assert distance_from_contact_d(simulated, measured, record.conditions) == pytest.approx(rms, abs=5e-4)
     assert simulated.apexes_m[0] / record.quoted["apex_m"][0] - 1 == pytest.approx(apex, abs=0.003)
 
 

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from restitution.laws.base import get
+from restitution.laws import get
 from restitution.laws.brenner_1961 import HIGH, LOW, series
 
 # Brenner, Chem. Eng. Sci. 16, 242 (1961): gap/radius and the drag multiplier as printed.

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from restitution.errors import InputError
-from restitution.laws.base import REGISTRY, get
+from restitution.laws import REGISTRY, get
 from restitution.laws.cut_off import CutOffLaw
 from restitution.laws.source_abstract_eq3 import lubrication_force
 

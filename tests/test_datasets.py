@@ -7,6 +7,7 @@ import pytest
 from scipy.special import gammaln
 
 from restitution import datasets
+from restitution.datasets_checks import check_package
 from restitution.errors import InputError
 from restitution.stokes import convention
 
@@ -41,7 +42,7 @@ def resistance(name, function, size_ratio=None):
 
 
 def test_the_shipped_package_has_no_defect():
-    assert datasets.check_package() == []
+    assert check_package() == []
 
 
 @pytest.mark.filterwarnings("ignore")  # those of a development-only dependency
@@ -76,7 +77,7 @@ def package(tmp_path):
 def test_a_changed_byte_is_caught(package):
     path = package / "gondret2002/st152.csv"
     path.write_bytes(path.read_bytes().replace(b"0.0091126", b"0.0091127"))
-    (defect,) = datasets.check_package(package)
+    (defect,) = check_package(package)
     assert defect.file == str(path)
     assert "hash" in defect.rule
 
@@ -85,7 +86,7 @@ def test_all_that_is_wrong_with_a_package_is_named(package):
     (package / "li2012/drop1.csv").unlink()
     (package / "li2012/drop2.csv").write_text("time_s,gap_m\n0,1\n")
     (package / "schemas/settling.json").write_text("{")
-    found = datasets.check_package(package / "datapackage.json")
+    found = check_package(package / "datapackage.json")
     assert [(d.file.removeprefix(f"{package}/"), d.rule.partition(";")[0].partition(":")[0]) for d in found] == [
         ("li2012/drop1.csv", "does not exist"),
         ("li2012/drop2.csv", "has 17 bytes"),
@@ -114,7 +115,7 @@ def test_wrong_metadata_is_named_by_its_field(package, change, field):
     content = json.loads(file.read_text())
     content["resources"][0] |= change
     file.write_text(json.dumps(content))
-    (defect,) = datasets.check_package(package)
+    (defect,) = check_package(package)
     assert (defect.file, defect.field) == (str(file), field)
 
 

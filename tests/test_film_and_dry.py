@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import restitution.laws as laws
-from restitution.laws.base import REGISTRY, get
+from restitution.laws import REGISTRY, get
 from restitution.laws.dry import yield_velocity
 from restitution.laws.film import reduced_modulus
 

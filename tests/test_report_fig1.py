@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from restitution import comparison, datasets, laws
-from restitution.report import fig1
+from restitution.report import fig1_report
 from restitution.stokes import Speed
 
 ROOT = Path(__file__).parent.parent
@@ -32,7 +32,7 @@ FILES = {
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("fig1")
-    fig1.write(folder)
+    fig1_report.write(folder)
     return folder
 
 
@@ -59,7 +59,7 @@ def test_whole_trajectories_meet_the_frames_and_agree_with_slopes(report):
 
 
 def test_second_run_gives_the_same_bytes(report, tmp_path):
-    fig1.write(tmp_path)
+    fig1_report.write(tmp_path)
     for name in FILES:
         assert (tmp_path / name).read_bytes() == (report / name).read_bytes(), name
 
@@ -100,7 +100,7 @@ def test_the_data_reject_the_linear_readings(report):
 
 @pytest.mark.parametrize("speed", ["far", "window"])
 def test_the_page_of_another_speed_says_so(speed, tmp_path):
-    fig1.write(tmp_path, Speed(speed))
+    fig1_report.write(tmp_path, Speed(speed))
     page = (tmp_path / "index.html").read_text()
     impacts = pd.read_csv(tmp_path / "impacts.csv")
     assert set(impacts.speed_definition) == {speed}

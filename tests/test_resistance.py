@@ -7,7 +7,7 @@ import pytest
 
 import restitution.laws as laws
 from restitution.errors import OutOfRangeWarning
-from restitution.laws.base import REGISTRY, get
+from restitution.laws import REGISTRY, get
 from restitution.laws.cut_off import CutOffLaw
 from restitution.laws.pair import JeffreyOnishi1984Lubrication
 

@@ -1,15 +1,25 @@
-"""How far a modelled trajectory is from a camera track: residuals in diameters over a stretch of time.
+"""How far a modelled trajectory is from a recorded one: two distances, each the rms of the gaps' difference in d.
 
-The clocks of model and camera are brought together on the approach alone, so that what follows the first contact
-is a prediction: the shift is the one with the least squares over the frames before it. A record that begins on
-a rebound has its zero of time at the contact, and is taken at its word. The gap is counted from the level at which
-the recorded sphere comes to rest.
+Both take the frames up to t* = t sqrt(g/d) = 8 after the first contact. They differ in how the clocks of model and
+record are brought together:
+
+- :func:`agreement`, on the approach alone: the shift is the one with the least squares over the frames before the
+  first contact, so that what follows is a prediction, the moment of the contact included. A record that begins on
+  a rebound has its zero of time at the contact, and is taken at its word. The gap is counted from the level at
+  which the recorded sphere comes to rest. Quoted of the point particle and of fitted laws.
+- :func:`distance_from_contact_d`, at the first contacts: each trajectory runs from its own, without a shift that
+  could be chosen. An error of the approach does not enter, so it serves models that are released otherwise than
+  the sphere was filmed. Quoted of simulated runs, beside which the point particle then is scored alike.
+
+A fit to whole trajectories has its own clock among its unknowns; its ``rms_d`` (:mod:`restitution.calibration.
+whole_trajectories`) is neither of these.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +32,17 @@ from restitution.laws.legendre import Legendre2005
 from restitution.tracks import Contacts, Track, contacts
 
 UNTIL = 8.0
-"""End of the comparison in t* = t sqrt(g/d) after the first contact."""
+"""End of a comparison in t* = t sqrt(g/d) after the first contact."""
 _CENTRE = 0.2
+"""A record that never comes nearer to the wall, in d, has the height of the centre in place of the gap."""
+
+
+class Flown(Protocol):
+    """A trajectory with the times of its contacts (:class:`restitution.bounces.Bounces`)."""
+
+    time_s: NDArray
+    gap_m: NDArray
+    contacts_s: NDArray
 
 
 @dataclass(frozen=True)
@@ -47,15 +66,15 @@ def release_of(track: Track, conditions: Conditions, closures: Closures | None =
     further up. Released at the terminal speed the model meets the wall with 0.469 m/s, and its first apex comes
     out a fifth lower.
     """
-    found = contacts(track)
-    frames = _approach(track, found)
+    touches = contacts(track)
+    frames = _approach(track, touches)
     if len(frames) == 0 and conditions.impact is not None:
         return release_reaching(conditions.impact.speed, conditions, closures)
-    frames = frames[track.value[frames] - (found.level or 0.0) > 0.1 * conditions.sphere.diameter]
+    frames = frames[track.value[frames] - (touches.level or 0.0) > 0.1 * conditions.sphere.diameter]
     if len(frames) < 2:
         raise InputError("the record has no approach: give the release, by gap and speed")
     slope = np.polyfit(track.time_s[frames], track.value[frames], 1)[0]
-    return Release(float(track.value[frames[0]] - (found.level or 0.0)), float(-slope), developed=True)
+    return Release(float(track.value[frames[0]] - (touches.level or 0.0)), float(-slope), developed=True)
 
 
 def release_reaching(
@@ -77,8 +96,26 @@ def release_reaching(
     return Release(gap, float(brentq(excess, 0.1 * speed, 3 * speed, xtol=1e-9)))
 
 
+def distance_from_contact_d(model: Flown, record: Flown, conditions: Conditions, until: float = UNTIL) -> float:
+    """Root mean square of the model's gap less the record's, in d, over the frames in 0 <= t* <= ``until``.
+
+    Each from its own first contact. NaN where the model ends before the record does, up to ``until``.
+    """
+    d = conditions.sphere.diameter
+    after = record.time_s - record.contacts_s[0]
+    use = (after >= 0) & (after * math.sqrt(conditions.gravity / d) <= until)
+    time = after[use] + model.contacts_s[0]
+    if len(time) == 0 or model.time_s[-1] < time[-1]:
+        return math.nan
+    error = np.interp(time, model.time_s, model.gap_m) - record.gap_m[use]
+    return float(np.sqrt(np.mean(error**2)) / d)
+
+
 def agreement(trajectory: Trajectory, track: Track, until: float = UNTIL) -> Agreement:
-    """Compare; raises :class:`InputError` for a track without a bounce or of the height of the centre."""
+    """The distance with the clocks together on the approach.
+
+    Raises :class:`InputError` for a track without a bounce or of the height of the centre.
+    """
     if track.quantity != "gap":
         raise InputError("a trajectory is compared with gaps; this record has velocities")
     if not np.all(np.isfinite(track.value)) or np.any(np.diff(track.time_s) <= 0):
@@ -91,10 +128,10 @@ def agreement(trajectory: Trajectory, track: Track, until: float = UNTIL) -> Agr
         )
     if not trajectory.impacts:
         raise InputError("the model has no impact within its time: let it run longer")
-    found = contacts(track)
-    if not found.contacts and not _starts_at_contact(track):
+    touches = contacts(track)
+    if not touches.contacts and not _starts_at_contact(track):
         raise InputError("the record has no bounce")
-    level, frames = found.level or 0.0, _approach(track, found)
+    level, frames = touches.level or 0.0, _approach(track, touches)
     gap, first = track.value - level, trajectory.impacts[0]
     touch = 0.0  # time of the first contact by the record's clock, from the record alone where that can be
     if len(frames) > 0:
@@ -112,11 +149,11 @@ def agreement(trajectory: Trajectory, track: Track, until: float = UNTIL) -> Agr
     return Agreement(after[use], residual, shift, float(np.sqrt(np.mean(residual**2)) / d))
 
 
-def _approach(track: Track, found: Contacts) -> NDArray:
+def _approach(track: Track, touches: Contacts) -> NDArray:
     """Indices of the frames before the first contact."""
-    if not found.contacts or _starts_at_contact(track):
+    if not touches.contacts or _starts_at_contact(track):
         return np.arange(0)
-    return np.array(found.contacts[0].approach, dtype=int)
+    return np.array(touches.contacts[0].approach, dtype=int)
 
 
 def _starts_at_contact(track: Track) -> bool:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from restitution import laws
 from restitution.calibration.parameters import Parameter, scale_of
 from restitution.errors import InputError
-from restitution.laws.base import compiled_formula
+from restitution.laws.formula import compiled_formula
 from restitution.stokes import Speed
 
 

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from restitution.commands import fit, options
+from restitution.commands import fit_options, options
 from restitution.console import show, show_rows
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="rank laws on your own impacts, by refitting without each impact and each source",
         description="Rank rebound laws by AIC, BIC, leave-one-out and leave-one-source-out predictive scores.",
     )
-    fit.add_data(parser)
+    fit_options.add_data(parser)
     parser.add_argument(
         "--law",
         action="append",
@@ -30,7 +30,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--law-stokes", metavar="CONVENTION", help="which Stokes number St in a formula is")
     parser.add_argument("--as-published", action="store_true", help="hold the laws' parameters at their defaults")
-    fit.add_plan(parser)
+    fit_options.add_plan(parser)
     parser.add_argument("--out", metavar="FILE", help="also write the table, as CSV")
     parser.set_defaults(run=run)
 
@@ -46,11 +46,11 @@ def run(args: argparse.Namespace) -> None:
     if not args.data:
         raise InputError("name the data: CSV files or shipped records")
     options.check_output("--out", args.out, args.data)
-    observations = read(args.data, fit.reading_of(args))
+    observations = read(args.data, fit_options.reading_of(args))
     plans = []
     wanted = args.law or laws.names("rebound")
     for law in wanted:
-        plan = fit.plan_of(args, law, args.law_stokes or observations.convention, strict=len(wanted) == 1)
+        plan = fit_options.plan_of(args, law, args.law_stokes or observations.convention, strict=len(wanted) == 1)
         if args.as_published:
             plan = replace(plan, fixed={p.name: p.start for p in plan.model.parameters} | dict(plan.fixed))
         plans.append((law, plan))

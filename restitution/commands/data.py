@@ -10,7 +10,7 @@ from restitution.commands import options
 from restitution.console import cell, show, show_facts, show_rows
 
 if TYPE_CHECKING:
-    from restitution.datasets import Resource
+    from restitution.datasets_package import Resource
 
 MOST_DEFECTS = 50
 
@@ -125,6 +125,8 @@ def _about(r: Resource) -> list[tuple[str, str]]:
 def run_validate(args: argparse.Namespace) -> None:
     """Print one line a valid file; raises :class:`InputError` with the defects otherwise."""
     from restitution import datasets
+    from restitution.datasets_checks import check_package, infer_schema
+    from restitution.datasets_package import read_package
     from restitution.errors import Defect, InputError
     from restitution.tables import check_table
 
@@ -133,13 +135,13 @@ def run_validate(args: argparse.Namespace) -> None:
     if path is None or path.is_dir() or path.suffix == ".json":
         if args.schema or columns or args.unit != "m":
             raise InputError("--schema, --column and --unit describe a CSV file; a data package states its own")
-        _raise(datasets.check_package(path))
-        place, package = datasets.read_package(path)
+        _raise(check_package(path))
+        place, package = read_package(path or datasets.folder())
         for r in package.resources:
             show(f"{place / r.path}: valid {r.table} table")
         return
 
-    schema = datasets.schema(args.schema) if args.schema else datasets.infer_schema(path, columns)
+    schema = datasets.schema(args.schema) if args.schema else infer_schema(path, columns)
     if args.unit == "mm" and "gap_m" not in schema.columns:
         raise InputError(Defect(f"--unit mm: a {schema.name} table has no gap_m", str(path)))
     _raise(check_table(path, schema, columns, {"gap_m": 1e-3} if args.unit == "mm" else None))

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from restitution.commands import fit_options
 from restitution.console import show, show_facts, show_rows
 
 if TYPE_CHECKING:
@@ -38,7 +39,6 @@ def run(args: argparse.Namespace) -> None:
     from restitution.calibration.fit_summary import describe
     from restitution.calibration.recordings import read_recordings
     from restitution.calibration.trajectory_fit import Measured, fit_law
-    from restitution.commands import fit as command
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
     from restitution.laws.source_abstract_eq4 import READINGS
@@ -49,10 +49,10 @@ def run(args: argparse.Namespace) -> None:
     if args.separate:
         rule = "does not go with --trajectory: records differ by their offset; fit them one by one instead"
         raise InputError(Defect(rule, field="--separate", value=args.separate[0][0]))
-    how = command.reading_of(args)
+    how = fit_options.reading_of(args)
     wakes = {"auto": (False, True), "on": (True,), "off": (False,)}[args.wake]
     plans = {
-        law: command.plan_of(args, law, args.law_stokes or how.stokes or "st", strict=args.law is not None)
+        law: fit_options.plan_of(args, law, args.law_stokes or how.stokes or "st", strict=args.law is not None)
         for law in ((args.law,) if args.law else READINGS)
     }
     measured = Measured.of(read_recordings(args.data, how), wakes)

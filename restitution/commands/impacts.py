@@ -100,6 +100,7 @@ def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
     """The track, its conditions and its kind."""
     from restitution import datasets
     from restitution.conditions import read_conditions
+    from restitution.datasets_checks import infer_schema
     from restitution.errors import Defect, InputError
     from restitution.tables import read_table
     from restitution.tracks import Track
@@ -120,7 +121,7 @@ def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
     for option, given, choice in (("--unit", args.unit, "m or mm"), ("--time-unit", args.time_unit, "s or ms")):
         if columns and not given:
             raise InputError(f"columns named by --column have no stated unit: add {option} {choice}")
-    schema = datasets.infer_schema(args.track, columns)
+    schema = infer_schema(args.track, columns)
     if schema.name not in ("trajectory", "settling"):
         raise InputError(Defect(f"is a {schema.name} table, not a track of time and gap or velocity", args.track))
     length = 1e-3 if args.unit == "mm" else 1.0

@@ -58,12 +58,12 @@ def _add_runs(parser: argparse.ArgumentParser) -> None:
 def run_fig1(args: argparse.Namespace) -> None:
     """Write the Fig. 1 report and name its files."""
     from restitution.errors import Defect, InputError
-    from restitution.report import fig1
+    from restitution.report import fig1_report
     from restitution.stokes import Speed
 
     if not args.out:
         raise InputError(Defect("names no folder", field="--out"))
-    for name in fig1.write(args.out, Speed(args.speed), args.runs):
+    for name in fig1_report.write(args.out, Speed(args.speed), args.runs):
         show(str(Path(args.out) / name))
 
 

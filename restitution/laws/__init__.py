@@ -1,6 +1,8 @@
 """Closure laws, one small record each; importing this package fills the registry.
 
-``get(name, **parameters)`` gives a law, ``names(family)`` lists them.
+``get(name, **parameters)`` gives a law, ``names(family)`` lists them. Read :mod:`~restitution.laws.base` (what a
+law is), :mod:`~restitution.laws.rebound` and :mod:`~restitution.laws.resistance` (the two large families), then
+any law; :mod:`~restitution.laws.formula` and :mod:`~restitution.laws.registry` serve them.
 """
 
 from __future__ import annotations
@@ -8,8 +10,9 @@ from __future__ import annotations
 import importlib
 import pkgutil
 
-from restitution.laws.base import REGISTRY, CheckValue, Law, Status, get, parameter
+from restitution.laws.base import REGISTRY, CheckValue, Law, Status, parameter
 from restitution.laws.rebound import ReboundLaw
+from restitution.laws.registry import get, names
 from restitution.laws.resistance import ResistanceLaw
 
 __all__ = [
@@ -26,8 +29,3 @@ __all__ = [
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
-
-
-def names(family: str | None = None) -> list[str]:
-    """Names of the laws of one family (``rebound``, ``resistance``, ...) or of all, in the order of modules."""
-    return [name for name, law in REGISTRY.items() if family in (None, law.family)]

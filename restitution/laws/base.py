@@ -12,19 +12,20 @@ in ``formula_note``. Sympy is imported when a law is first evaluated, not when i
 from __future__ import annotations
 
 import dataclasses
-import re
 import warnings
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from restitution.errors import Defect, InputError, OutOfRangeError, OutOfRangeWarning
+from restitution.laws.formula import compiled_formula, latex_name, parse
 
 OutOfRange = Literal["warn", "raise", "clip", "ignore"]
 REGISTRY: dict[str, type[Law]] = {}
+"""All laws by name; a law enters it by being defined."""
 
 
 class Status(StrEnum):
@@ -152,7 +153,7 @@ class Law:
         """The formula as a sympy expression in symbols for variables and parameters."""
         if self.formula is None:
             raise InputError(f"{self.name} has no closed formula: {self.formula_note}")
-        return _parse(self.formula, self._symbols)
+        return parse(self.formula, self._symbols)
 
     def latex(self) -> str:
         """The equation in LaTeX."""
@@ -220,54 +221,3 @@ class Law:
         with np.errstate(divide="ignore", over="ignore"):
             result = function(*arrays, *self.parameters.values())
         return np.broadcast_to(np.asarray(result, float), shape)
-
-
-@cache
-def _parse(formula: str, symbols: tuple[str, ...]) -> Any:
-    import sympy
-
-    # Formulas are constants of this package; every name in them is bound here, so none means a sympy object.
-    return sympy.sympify(formula, locals={s: sympy.Symbol(s, positive=True) for s in symbols})
-
-
-@cache
-def compiled_formula(formula: str, symbols: tuple[str, ...], wrt: str | None) -> Any:
-    import sympy
-
-    positive = [sympy.Symbol(s, positive=True) for s in symbols]
-    expression = _parse(formula, symbols)
-    if wrt is not None:
-        expression = expression.diff(sympy.Symbol(wrt, positive=True))
-    return sympy.lambdify(positive, expression, modules="numpy", cse=True)
-
-
-def latex_name(symbol: str) -> str:
-    r"""``h_min`` -> ``h_{\mathrm{min}}``, ``h0`` -> ``h_{0}``, ``beta`` -> ``\beta``."""
-    greek = {
-        "beta": r"\beta",
-        "eps": r"\varepsilon",
-        "eta": r"\eta",
-        "kappa": r"\kappa",
-        "mu": r"\mu",
-        "rho": r"\rho",
-        "sigma": r"\sigma",
-        "tau": r"\tau",
-    }
-    letters, digits, word = re.fullmatch(r"([A-Za-z]+)(\d*)_?(.*)", symbol).groups()
-    below = digits + (rf"\mathrm{{{word}}}" if len(word) > 1 else word)
-    return greek.get(letters, letters) + (f"_{{{below}}}" if below else "")
-
-
-def get(name: str, **parameters: float) -> Law:
-    """The law of that name, with its default parameters but those given."""
-    import restitution.laws  # noqa: F401  (fills the registry)
-
-    try:
-        law = REGISTRY[name]
-    except KeyError:
-        import difflib
-
-        near = difflib.get_close_matches(name, REGISTRY, n=3)
-        hint = f"; did you mean {', '.join(near)}?" if near else "; see 'restitution laws list'"
-        raise InputError(f"unknown law {name!r}{hint}") from None
-    return law().replace(**parameters)

@@ -13,16 +13,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution import comparison, datasets, laws
-from restitution.files import write_folder
 from restitution.impacts import find_impacts
 from restitution.laws.source_abstract_eq4 import READINGS
 from restitution.stokes import MEASURED_SPEEDS, Speed
-from restitution.table_writing import records_text, table_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from restitution.conditions import Conditions
+    from restitution.datasets_package import Resource
     from restitution.kept_runs import KeptRun
     from restitution.report.fig1_trajectories import Trajectories
     from restitution.report.fig1_verdict import Judgement
@@ -32,12 +31,6 @@ SIMULATED_BY_ABSTRACT = "gondret2002_st152"
 """The record whose bounces the simulation of the source abstract used ("solid squares" of its Fig. 1)."""
 _CELLS = 10
 """Cells a diameter of the simulated series, the same for all its points."""
-_MEASURED = "%.5g"
-"""Digits of measured values: the sixth may depend on the machine's arithmetic."""
-_ESTIMATED = "%.3g"
-"""Digits of estimates: the fourth may depend on it."""
-_SCORED = "%.2f"
-"""Digits of scores of fits, which a search for a maximum gives on any machine."""
 OTHERS = ("legendre_2005", "barnocky_davis_1988", "two_way_lubrication", "ehd_composite")
 
 
@@ -129,7 +122,7 @@ def predicted(folder: Path) -> dict[str, KeptRun]:
     return found
 
 
-def _provenance(r: datasets.Resource) -> dict[str, object]:
+def _provenance(r: Resource) -> dict[str, object]:
     return {
         "used_in_simulation": r.name == SIMULATED_BY_ABSTRACT,
         "experiment": r.experiment.cite,
@@ -151,24 +144,3 @@ def _provenance_of_run(run: KeptRun) -> dict[str, object]:
         "data": f"{run.case.name}/trajectory.csv",
         "sha256": f"run of physics {run.about.physics}, code {run.about.code_hash}",
     }
-
-
-def write(folder: str | Path, speed: Speed = SPEED, runs: str | Path | None = None) -> list[str]:
-    """Write the report into ``folder``; returns the names of the files. The same input gives the same bytes."""
-    from restitution.report import fig1_page, fig1_plot, fig1_trajectories, fig1_verdict
-
-    fig1 = gather(speed, runs)
-    drawing = fig1_plot.draw(fig1, speed)
-    files = {
-        "figure.svg": drawing.svg,
-        "figure.png": drawing.png,
-        "impacts.csv": table_text(fig1.impacts, _MEASURED),
-        "impacts_by_speed.csv": table_text(fig1.every, _MEASURED),
-        "laws.csv": table_text(fig1.scores, _MEASURED),
-        "readings.csv": records_text(fig1_verdict.table(fig1.judgements), _SCORED),
-        "trajectories.csv": records_text(fig1_trajectories.records(fig1.trajectories), _ESTIMATED),
-        "trajectory_readings.csv": records_text(fig1_trajectories.table(fig1.trajectories), _SCORED),
-        "index.html": fig1_page.render(fig1, speed, drawing.svg),
-    }
-    write_folder(folder, files)
-    return list(files)

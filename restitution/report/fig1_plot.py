@@ -11,13 +11,13 @@ from restitution.calibration.fit_result import result_of
 from restitution.calibration.prediction import predict
 from restitution.laws.source_abstract_eq4 import READINGS
 from restitution.report.drawing import Drawing, save, style
+from restitution.report.fig1 import OTHERS, SIMULATED_BY_ABSTRACT, Fig1
 from restitution.stokes import Speed, StokesNumber
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from restitution.conditions import Conditions
-    from restitution.report.fig1 import Fig1
 
 St_MIN, St_MAX = 4.0, 2000.0
 E_DRY = 0.97
@@ -54,14 +54,12 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
     """Both panels as SVG and PNG."""
     from matplotlib.figure import Figure
 
-    from restitution.report import fig1 as content
-
     with style():
         figure = Figure(figsize=(11.0, 5.6), layout="constrained")
         left, right = figure.subplots(1, 2, sharey=True)
         for ax, title, names in (
             (left, "(a) Readings of Eq. (4) of the source abstract", READINGS),
-            (right, "(b) Other laws", content.OTHERS),
+            (right, "(b) Other laws", OTHERS),
         ):
             _known_without_points(ax)
             if ax is left:
@@ -89,8 +87,6 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
 
 def _drawn_for(fig1: Fig1) -> Conditions:
     """The sphere whose St the axis is in, where a law has another."""
-    from restitution.report.fig1 import SIMULATED_BY_ABSTRACT
-
     return fig1.conditions[SIMULATED_BY_ABSTRACT]
 
 

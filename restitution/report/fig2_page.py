@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from restitution import datasets
-from restitution.bounces import UNTIL, gap_error_d
+from restitution.bounce.agreement import UNTIL, distance_from_contact_d
 from restitution.impacts import find_impacts
 from restitution.report import fig2 as content
 from restitution.report.fig2_findings import GRIDS, in_words
@@ -97,7 +97,7 @@ def _record_row(fig2: Fig2, name: str, kind: str) -> dict:
         "v": _far_speed(name),
         "apexes": [_with_error(apexes, goals, k, 1e3, own) for k in range(BOUNCES)],
         "intervals": [_with_error(found.intervals_s, goal.intervals_s, k, 1e3, own) for k in range(BOUNCES)],
-        "rms": "" if own else f"{gap_error_d(found, goal, resource.conditions):.3f}",
+        "rms": "" if own else f"{distance_from_contact_d(found, goal, resource.conditions):.3f}",
         "made": resource.name,
         "stale": False,
     }

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution import datasets
-from restitution.bounces import Bounces, gap_error_d, modelled
+from restitution.bounce.agreement import distance_from_contact_d
+from restitution.bounces import Bounces, modelled
 from restitution.case import Case
 from restitution.kept_runs import KeptRun
 
@@ -72,7 +73,7 @@ def _line(line: PointLine, record: Bounces) -> dict[str, object]:
         "approach_speed_m_s": line.far_speed,
     }
     row |= _bounce_by_bounce(found, record, line.record)
-    row["rms_gap_d"] = gap_error_d(found, record, line.conditions)
+    row["rms_gap_d"] = distance_from_contact_d(found, record, line.conditions)
     return row | {"steps": len(line.path.time_s) - 1, "threads": 1, "stale": False}
 
 
@@ -94,7 +95,7 @@ def _row(run: KeptRun, record: Bounces | None) -> dict[str, object]:
     }
     row |= _bounce_by_bounce(found, record, case.record)
     both = found is not None and record is not None
-    row["rms_gap_d"] = gap_error_d(found, record, case.conditions) if both else math.nan
+    row["rms_gap_d"] = distance_from_contact_d(found, record, case.conditions) if both else math.nan
     row |= _settling(run)
     return row | {
         "steps": run.about.steps,

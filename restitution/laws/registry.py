@@ -1,0 +1,24 @@
+"""The laws by name. They are there once the package :mod:`restitution.laws` has been imported."""
+
+from __future__ import annotations
+
+import difflib
+
+from restitution.errors import InputError
+from restitution.laws.base import REGISTRY, Law
+
+
+def get(name: str, **parameters: float) -> Law:
+    """The law of that name, with its default parameters but those given."""
+    try:
+        law = REGISTRY[name]
+    except KeyError:
+        near = difflib.get_close_matches(name, REGISTRY, n=3)
+        hint = f"; did you mean {', '.join(near)}?" if near else "; see 'restitution laws list'"
+        raise InputError(f"unknown law {name!r}{hint}") from None
+    return law().replace(**parameters)
+
+
+def names(family: str | None = None) -> list[str]:
+    """Names of the laws of one family (``rebound``, ``resistance``, ...) or of all, in the order of modules."""
+    return [name for name, law in REGISTRY.items() if family in (None, law.family)]
