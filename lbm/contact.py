@@ -28,6 +28,15 @@ _OVERLAPS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 
 
 @dataclass(frozen=True)
+class Impact:
+    """One contact: ``step`` (with fraction), speeds before and after it at the wall, or carried to it."""
+
+    step: float
+    speed_in: float
+    speed_out: float
+
+
+@dataclass(frozen=True)
 class FilmRebound:
     """Rebound by an effective law: ``rebound(approach_speed, count)`` gives the speed after impact ``count``.
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lbm.contact import Contact
+from lbm.contact import Contact, Impact
 from lbm.errors import InputError
 from lbm.exchange import exchange
 from lbm.film import Film
@@ -28,7 +28,7 @@ from lbm.refill import refill
 from lbm.reflection import SCHEMES
 from lbm.sampling import sampled
 from lbm.surface import REACH
-from lbm.wall_motion import FRACTION, STATE_SIZE, Impact, WallMotion, WallState
+from lbm.wall_motion import FRACTION, motion_at_wall
 
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
@@ -98,11 +98,13 @@ class Spheres:
         self.spin_changes = np.zeros_like(self.spins)
         self.gravity = _vectors("gravity", [gravity])[0]
         self.film, self.contact, self.drive = film, contact, drive
-        self.wall_motion = WallMotion(film, contact, fraction)
+        self.fraction = fraction
         self.scheme = SCHEMES[interpolation]
         self.forces, self.torques = np.zeros_like(self.centres), np.zeros_like(self.centres)
         self.impacts: list[SphereImpact] = []
-        self._at_walls = {(s, face): WallState() for s in range(len(spheres)) for face in range(6)}
+        self._at_walls = {
+            (s, face): motion_at_wall(film, contact, fraction) for s in range(len(spheres)) for face in range(6)
+        }
         self._free = drive is None
         self._tracks: list[list[tuple[float, ...]]] = [[] for _ in spheres]
         self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 6)) for r in self.radii]
@@ -167,7 +169,7 @@ class Spheres:
         weight = (mass - self.volumes[s]) * self.gravity
         force = self.forces[s].copy()
         torque = self.torques[s].copy()
-        near = {f: gap for f, gap in gaps.items() if self.wall_motion.matters(gap, _away(f) * v[f // 2])}
+        near = {f: gap for f, gap in gaps.items() if self._at_walls[s, f].matters(gap, _away(f) * v[f // 2])}
         for f, gap in near.items():
             if self.film is not None:
                 push, turn = self.film.along(gap, v, self.spins[s], _away(f) * np.eye(3)[f // 2])
@@ -176,9 +178,8 @@ class Spheres:
         centre = self.centres[s] + 0.5 * (v + new)
         for f, gap in near.items():
             axis, sign = f // 2, _away(f)
-            state = self._at_walls[s, f]
-            after, speed, impacts = self.wall_motion.step(
-                state, step, gap, sign * v[axis], sign * force[axis], sign * weight[axis], mass
+            after, speed, impacts = self._at_walls[s, f].step(
+                step, gap, sign * v[axis], sign * force[axis], sign * weight[axis], mass
             )
             new[axis] = sign * speed
             centre[axis] = self.centres[s, axis] + sign * (after - gap)
@@ -201,14 +202,14 @@ class Spheres:
             "film": None if self.film is None else self.film.describe(),
             "contact": None if self.contact is None else self.contact.describe(),
             "drive": sampled(self.drive, [(step, r * self.radii[0]) for step in _STEPS for r in _GAPS]),
-            "fraction": self.wall_motion.fraction,
+            "fraction": self.fraction,
         }
 
     def state(self) -> dict[str, np.ndarray]:
         """What changes in time."""
         return {
             "motion": np.hstack(self._moving()),
-            "at_walls": np.array([self._at_walls[key].row() for key in sorted(self._at_walls)]),
+            "at_walls": np.array([motion.numbers() for motion in self._at_walls.values()]),
             "impacts": np.array(
                 [(i.step, i.speed_in, i.speed_out, i.sphere, _FACES.index(i.face)) for i in self.impacts]
             ).reshape(-1, 5),
@@ -223,8 +224,8 @@ class Spheres:
         """Continue from a :meth:`state`."""
         for own, saved in zip(self._moving(), np.hsplit(state["motion"], 6), strict=True):
             own[...] = saved
-        for key, row in zip(sorted(self._at_walls), state["at_walls"].reshape(-1, STATE_SIZE), strict=True):
-            self._at_walls[key] = WallState(*(float(x) for x in row))
+        for motion, numbers in zip(self._at_walls.values(), state["at_walls"], strict=True):
+            motion.remember(numbers)
         self.impacts = [
             SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=_FACES[int(row[4])])
             for row in state["impacts"]

@@ -17,184 +17,186 @@ to the sphere until it is paid. The principle has no time or number of steps to 
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass, fields
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
 
-from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact
+from lbm.arguments import shown
+from lbm.carried import CarriedMotion
+from lbm.contact import Contact, DryRebound, FilmRebound, Impact, SoftContact
 from lbm.errors import InputError
 from lbm.film import Film
+from lbm.motion import Motion
 
 FRACTION = 0.05
 _FEWEST = 4  # sub-steps a step near a wall
 _PER_CONTACT = 200  # sub-steps a soft contact
 
 
-@dataclass
-class WallState:
-    """What a sphere remembers of one wall; NaN where there is nothing to remember.
+class SubStep(NamedTuple):
+    """Gap and velocity before and after a time ``dt``; ``begin`` is counted from the begin of the fluid's step."""
 
-    ``onset`` velocity at the film's cut-off, ``owed`` impulse that film and wall have still to pay to the
-    fluid, ``touching`` speed at the begin of a soft contact; for :class:`FilmRebound` ``inside`` the film or
-    not, the ``acceleration`` there, time and velocity (``timed``, ``passed``) two edges away, and the
-    ``count`` of impacts.
+    begin: float
+    dt: float
+    gap: float
+    v: float
+    new_gap: float
+    new_v: float
+
+
+class FilmMotion(Motion):
+    """The sub-steps in the film, and the whole motion where there is no contact: nothing stops the sphere.
+
+    It remembers the ``onset``, the velocity at the film's cut-off.
     """
 
-    onset: float = math.nan
-    owed: float = 0.0
-    touching: float = math.nan
-    inside: float = 0.0
-    acceleration: float = 0.0
-    timed: float = math.nan
-    passed: float = math.nan
-    count: float = 0.0
+    remembered = ("onset",)
+    added_mass = 0.0
+    """Mass that film and contact move with the sphere."""
 
-    def row(self) -> tuple[float, ...]:
-        """The state as numbers."""
-        return astuple(self)
-
-
-STATE_SIZE = len(fields(WallState))
-
-
-@dataclass(frozen=True)
-class Impact:
-    """One contact: ``step`` (with fraction), speeds before and after it at the wall, or carried to it."""
-
-    step: float
-    speed_in: float
-    speed_out: float
-
-
-class WallMotion:
-    """The rules for a sphere of ``mass`` at a wall; lengths in cells, times in steps."""
-
-    def __init__(self, film: Film | None, contact: Contact | None, fraction: float = FRACTION):
-        if isinstance(contact, FilmRebound) and film is not None and film.normal is not None:
-            raise InputError(
-                "FilmRebound with a normal force of the film counts the viscous loss twice: "
-                "take Film(normal=None), or DryRebound"
-            )
-        if not 0 < fraction <= 0.5:
-            raise InputError(f"fraction = {fraction:g}: sub-steps must lie in (0, 0.5] of gap / speed")
+    def __init__(self, film: Film | None, contact: Contact | None, fraction: float):
         self.film, self.contact, self.fraction = film, contact, fraction
         self.cut_off = film.cut_off if film else 0.0
         self.touch = film.floor if film else 0.0
-        self.added_mass = contact.added_mass if isinstance(contact, DryRebound) else 0.0
+        self.onset = math.nan
 
     def matters(self, gap: float, v: float) -> bool:
-        """Whether the wall may act within the next step."""
-        near = 2 * self.contact.edge if isinstance(self.contact, FilmRebound) else self.cut_off
-        return gap + 2 * min(v, 0.0) < near + 0.1
+        """The film begins at its cut-off."""
+        return gap + 2 * min(v, 0.0) < self.cut_off + 0.1
 
-    def step(self, state: WallState, time: float, gap: float, v: float, fluid: float, weight: float, mass: float):
-        """Gap, velocity and impacts one step later; ``weight`` is less buoyancy."""
-        if isinstance(self.contact, FilmRebound):
-            return self._carried(state, self.contact, time, gap, v, (fluid + weight) / mass)
-        paid = min(max(-fluid, min(state.owed, 0.0)), max(state.owed, 0.0))
-        state.owed -= paid
-        force = fluid + paid + weight
+    def step(self, time, gap, v, fluid, weight, mass):
+        """Sub-step after sub-step, each ended as the contact has it."""
+        force = self._passed_on(fluid) + weight
         impacts: list[Impact] = []
         elapsed = 0.0
         while elapsed < 1.0:
             dt = min(1.0 - elapsed, self._substep_size(gap, v))
             if gap >= self.cut_off:
-                state.onset = math.nan
-            elif math.isnan(state.onset) and v < 0:
-                state.onset = v
-            new_gap, new_v = self._substep(state, gap, v, force, mass, dt)
-            if isinstance(self.contact, DryRebound) and new_gap < self.touch and new_v < 0:
-                part = max(0.0, (gap - self.touch) / (gap - new_gap))
-                v_in = -(v + part * (new_v - v))
-                out = self.contact.e_dry * v_in
-                elapsed += part * dt
-                if force < 0 and -2 * out * mass / force < 1:
-                    # It would be back within one step: at rest on the wall until something lifts it.
-                    return self.touch, 0.0, [*impacts, Impact(time + elapsed, v_in, 0.0)] if v != 0 else impacts
-                impacts.append(Impact(time + elapsed, v_in, out))
-                state.owed += self.added_mass * (out + v_in)
-                state.onset = math.nan
-                gap, v = self.touch, out
-                continue
-            if isinstance(self.contact, SoftContact):
-                impacts += self._soft_impact(state, time + elapsed, gap, v, new_gap, new_v)
-            gap, v = new_gap, new_v
-            elapsed += dt
+                self.onset = math.nan
+            elif math.isnan(self.onset) and v < 0:
+                self.onset = v
+            sub = SubStep(elapsed, dt, gap, v, *self._substep(gap, v, force, mass, dt))
+            elapsed, gap, v, impact = self._end(sub, force, mass)
+            if impact is not None:
+                impacts.append(replace(impact, step=time + impact.step))
         return gap, v, impacts
+
+    def _passed_on(self, fluid: float) -> float:
+        """What the sphere feels of the fluid's force."""
+        return fluid
 
     def _substep_size(self, gap: float, v: float) -> float:
         if v == 0:
             return 1.0
-        dt = 1.0
         if gap < 2 * self.cut_off + 0.1:
-            dt = min(1 / _FEWEST, self.fraction * max(gap, self.touch, 1e-6) / abs(v))
-        if isinstance(self.contact, SoftContact):
-            dt = min(1 / _FEWEST, max(dt, self.fraction * self.touch / abs(v)))
-            if gap < self.touch + abs(v) * dt:
-                dt = min(dt, self.contact.duration / _PER_CONTACT)
-        return dt
+            return min(1 / _FEWEST, self.fraction * max(gap, self.touch, 1e-6) / abs(v))
+        return 1.0
 
-    def _substep(self, state: WallState, gap: float, v: float, force: float, mass: float, dt: float):
+    def _substep(self, gap: float, v: float, force: float, mass: float, dt: float) -> tuple[float, float]:
         middle = gap + 0.5 * dt * v
-        if isinstance(self.contact, SoftContact) and middle < self.touch and not math.isnan(state.touching):
-            force += self.contact.force(self.touch - middle, v, state.touching)
+        force += self._solid_force(middle, v)
         still = slope = 0.0
         if self.film is not None and middle > 0:
-            still, slope = self.film.resistance(middle, v, state.onset if v < 0 else math.nan)
+            still, slope = self.film.resistance(middle, v, self.onset if v < 0 else math.nan)
         inertia = mass + self.added_mass
         half = 0.5 * slope * dt / inertia
         new = (v * (1 + half) + (force / mass + still / inertia) * dt) / (1 - half)
-        state.owed += self.added_mass * (new - v - dt * force / mass)
         return gap + 0.5 * dt * (v + new), new
 
-    def _soft_impact(self, state, time, gap, v, new_gap, new_v) -> list[Impact]:
-        if math.isnan(state.touching) and new_gap < self.touch and new_v < 0:
-            state.touching = -new_v
-        elif not math.isnan(state.touching) and new_gap >= self.touch and new_v > 0:
-            found = [Impact(time, state.touching, new_v)]
-            state.touching = math.nan
-            return found
-        return []
+    def _solid_force(self, gap: float, v: float) -> float:
+        """What the wall itself pushes with."""
+        return 0.0
 
-    def _carried(self, state: WallState, contact: FilmRebound, time, gap, v, acceleration):
-        """The motion when the closure owns the film; see :class:`lbm.contact.FilmRebound`."""
-        impacts: list[Impact] = []
-        if not state.inside:
-            if gap >= 2 * contact.edge or v >= 0:
-                state.timed, state.passed = math.nan, math.nan
-            elif math.isnan(state.timed):
-                state.timed, state.passed = time, v
-            if gap >= contact.edge or v >= 0:
-                return gap + v + 0.5 * acceleration, v + acceleration, impacts
-            state.inside = 1.0
-            state.acceleration = 0.0
-            if time > state.timed:
-                state.acceleration = (v - state.passed) / (time - state.timed)
-        left = 1.0
-        while left > 0:
-            a = state.acceleration
-            dt = _time_to_wall(gap, v, a)
-            if dt > left:
-                gap, v = gap + v * left + 0.5 * a * left * left, v + a * left
-                break
-            v_in = -(v + a * dt)
-            out = contact.rebound(v_in, int(state.count))
-            left -= dt
-            state.count += 1
-            state.acceleration = -contact.free_fall
-            impacts.append(Impact(time + 1 - left, v_in, out))
-            gap, v = 0.0, out
-            if 2 * out < contact.free_fall:
-                return 0.0, 0.0, impacts
-        if gap >= contact.edge and v > 0:
-            state.inside = 0.0
-        return gap, v, impacts
+    def _end(self, sub: SubStep, force: float, mass: float) -> tuple[float, float, float, Impact | None]:
+        """Moment, gap and velocity from which to go on after ``sub``, and the impact if there was one."""
+        return sub.begin + sub.dt, sub.new_gap, sub.new_v, None
 
 
-def _time_to_wall(gap: float, v: float, a: float) -> float:
-    """First positive root of gap + v t + a t^2/2 = 0, or infinity."""
-    inner = v * v - 2 * a * gap
-    if inner < 0:
-        return math.inf
-    root = math.sqrt(inner)
-    if v < 0:
-        return 2 * gap / (root - v)
-    return (v + root) / -a if a < 0 else math.inf
+class DryMotion(FilmMotion):
+    """The motion of :class:`lbm.contact.DryRebound`.
+
+    It also remembers the impulse ``owed``, which film and wall have still to pay to the fluid.
+    """
+
+    remembered = ("onset", "owed")
+
+    def __init__(self, film: Film | None, contact: DryRebound, fraction: float):
+        super().__init__(film, contact, fraction)
+        self.added_mass = contact.added_mass
+        self.owed = 0.0
+
+    def _passed_on(self, fluid):
+        paid = min(max(-fluid, min(self.owed, 0.0)), max(self.owed, 0.0))
+        self.owed -= paid
+        return fluid + paid
+
+    def _end(self, sub, force, mass):
+        begin, dt, gap, v, new_gap, new_v = sub
+        self.owed += self.added_mass * (new_v - v - dt * force / mass)
+        if not (new_gap < self.touch and new_v < 0):
+            return super()._end(sub, force, mass)
+        part = max(0.0, (gap - self.touch) / (gap - new_gap))
+        moment = begin + part * dt
+        v_in = -(v + part * (new_v - v))
+        v_out = self.contact.e_dry * v_in
+        if force < 0 and -2 * v_out * mass / force < 1:
+            # It would be back within one step: at rest on the wall until something lifts it.
+            return math.inf, self.touch, 0.0, Impact(moment, v_in, 0.0) if v != 0 else None
+        self.owed += self.added_mass * (v_out + v_in)
+        self.onset = math.nan
+        return moment, self.touch, v_out, Impact(moment, v_in, v_out)
+
+
+class SoftMotion(FilmMotion):
+    """The motion of :class:`lbm.contact.SoftContact`.
+
+    It also remembers ``touching``, the speed at the begin of a contact.
+    """
+
+    remembered = ("onset", "touching")
+
+    def __init__(self, film: Film | None, contact: SoftContact, fraction: float):
+        super().__init__(film, contact, fraction)
+        self.touching = math.nan
+
+    def _substep_size(self, gap, v):
+        dt = super()._substep_size(gap, v)
+        if v == 0:
+            return dt
+        dt = min(1 / _FEWEST, max(dt, self.fraction * self.touch / abs(v)))
+        if gap < self.touch + abs(v) * dt:
+            dt = min(dt, self.contact.duration / _PER_CONTACT)
+        return dt
+
+    def _solid_force(self, gap, v):
+        if gap < self.touch and not math.isnan(self.touching):
+            return self.contact.force(self.touch - gap, v, self.touching)
+        return 0.0
+
+    def _end(self, sub, force, mass):
+        impact = None
+        if math.isnan(self.touching) and sub.new_gap < self.touch and sub.new_v < 0:
+            self.touching = -sub.new_v
+        elif not math.isnan(self.touching) and sub.new_gap >= self.touch and sub.new_v > 0:
+            impact = Impact(sub.begin, self.touching, sub.new_v)
+            self.touching = math.nan
+        return *super()._end(sub, force, mass)[:3], impact
+
+
+MOTIONS: dict[type, Callable[..., Motion]] = {
+    type(None): FilmMotion,
+    FilmRebound: CarriedMotion,
+    DryRebound: DryMotion,
+    SoftContact: SoftMotion,
+}
+"""The motion at a wall by the kind of the contact."""
+
+
+def motion_at_wall(film: Film | None, contact: Contact | None, fraction: float) -> Motion:
+    """A new motion of one sphere at one wall; raises :class:`InputError` for what does not go together."""
+    if type(contact) not in MOTIONS:
+        known = ", ".join(kind.__name__ for kind in MOTIONS if kind is not type(None))
+        raise InputError(f"contact = {shown(contact)}: give one of {known}, or None")
+    if not 0 < fraction <= 0.5:
+        raise InputError(f"fraction = {fraction:g}: sub-steps must lie in (0, 0.5] of gap / speed")
+    return MOTIONS[type(contact)](film, contact, fraction)
