@@ -1,4 +1,5 @@
-"""The added mass that the lattice gives a sphere touching a wall, by resolution (:mod:`lbm.impulsive_start`).
+"""The added mass that the lattice gives a sphere touching a wall, by resolution
+(:mod:`lbm.problems.impulsive_start`).
 
 Potential flow past the touching sphere gives (3/2) zeta(3) - 1 = 0.803. The lattice has less: where the film is
 thinner than half a cell no fluid is reversed. Run ``python -m benchmarks.added_mass``.
@@ -6,8 +7,8 @@ thinner than half a cell no fluid is reversed. Run ``python -m benchmarks.added_
 
 from __future__ import annotations
 
-from lbm.contact import lattice_added_mass
-from lbm.impulsive_start import added_mass
+from lbm.problems.impulsive_start import added_mass
+from lbm.spheres import lattice_added_mass
 
 
 def main() -> None:

@@ -22,11 +22,9 @@ from pathlib import Path
 
 import numpy as np
 
-from restitution.calibration.fitting import estimate
-from restitution.calibration.maximum import LEVELS
-from restitution.calibration.observations import Observations
-from restitution.calibration.plan import Plan
-from restitution.calibration.rebound_model import model_of
+from restitution.calibration import Plan, estimate, model_of
+from restitution.calibration.estimation.maximum import LEVELS
+from restitution.calibration.reading.observations import Observations
 from restitution.errors import InputError
 from restitution.files import write_whole
 from restitution.stokes import Speed

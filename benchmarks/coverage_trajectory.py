@@ -1,8 +1,8 @@
 """Do the intervals of ``restitution fit --trajectory`` hold what they promise? Synthetic records with known truth.
 
-The records are those of :mod:`restitution.calibration.synthetic_recordings`, under four sorts of noise. The model
-that makes them fits them; what a wrong model does is not in it. Printed are the fractions of sets whose 68 % and
-95 % intervals contain the truth: of K, of all restitutions together, and of scale, start and clock together.
+The records are those of :mod:`restitution.calibration.trajectories.synthetic`, under four sorts of noise. The
+model that makes them fits them; what a wrong model does is not in it. Printed are the fractions of sets whose 68 %
+and 95 % intervals contain the truth: of K, of all restitutions together, and of scale, start and clock together.
 
     python -m benchmarks.coverage_trajectory [--sets 100] [--out benchmarks/coverage_trajectory.json]
 """
@@ -17,13 +17,12 @@ from pathlib import Path
 
 import numpy as np
 
-from restitution.calibration.maximum import LEVELS
-from restitution.calibration.plan import Plan
-from restitution.calibration.reading import Reading
-from restitution.calibration.rebound_model import model_of
-from restitution.calibration.synthetic_recordings import Filming, K, draw, filmed
-from restitution.calibration.trajectory_fit import law_fit, observations
-from restitution.calibration.whole_trajectories import whole_trajectory
+from restitution.calibration import Plan, model_of
+from restitution.calibration.estimation.maximum import LEVELS
+from restitution.calibration.reading.reading import Reading
+from restitution.calibration.trajectories.fit import law_fit, observations
+from restitution.calibration.trajectories.synthetic import Filming, K, draw, filmed
+from restitution.calibration.trajectories.whole_trajectories import whole_trajectory
 
 CASES = (
     Filming("errors of reading alone"),

@@ -14,11 +14,8 @@ import time
 from collections.abc import Callable
 
 from benchmarks.coverage import Case, draw
-from restitution.calibration.fitting import estimate
-from restitution.calibration.plan import Plan
-from restitution.calibration.posterior import sample
-from restitution.calibration.ranking import rank
-from restitution.calibration.rebound_model import model_of
+from restitution.calibration import Plan, estimate, model_of, rank
+from restitution.calibration.estimation.posterior import sample
 
 SET = Case("speed", 0.03, 0.02)
 TWO_SOURCES = Case("speed, two sources", 0.03, 0.02, 0.0, 0.03)

@@ -1,7 +1,8 @@
 """The impulse that a sphere set moving at once takes from the fluid, against the exact unsteady Stokes flow.
 
-Flow and exact solution are those of :mod:`lbm.impulsive_start`. Viscosity and times are those of the rebound at St
-152 and Re 164. Means over d/c_s, for sound goes to and fro; later it comes back from the periodic images.
+Flow and exact solution are those of :mod:`lbm.problems.impulsive_start`. Viscosity and times are those of the
+rebound at St 152 and Re 164. Means over d/c_s, for sound goes to and fro; later it comes back from the periodic
+images.
 
     python -m benchmarks.impulsive_start
 """
@@ -11,7 +12,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.table import Table
 
-from lbm.impulsive_start import REYNOLDS, TIMES, exact, excess
+from lbm.problems.impulsive_start import REYNOLDS, TIMES, exact, excess
 
 GRIDS = ((10, 0.025), (16, 0.025), (20, 0.025), (10, 0.0125), (20, 0.0125))
 """Cells a diameter, and the lattice speed of the rebound that goes with the viscosity."""

@@ -30,7 +30,7 @@ from rich.table import Table
 
 from benchmarks.peers import lbmpy_steps
 from lbm import Body, Rates, Simulation
-from lbm.stencil import Q
+from lbm.fluid.stencil import Q
 
 
 @njit(parallel=True)

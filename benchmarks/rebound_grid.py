@@ -21,10 +21,9 @@ from rich.progress import track
 from rich.table import Table
 
 from restitution.bounce import OwnWake
-from restitution.case import Case
-from restitution.case_files import read_case
-from restitution.point_particle import closures_of, predict
-from restitution.resolved import ResolvedRun
+from restitution.cases import Case, read_case
+from restitution.runs.point_particle import closures_of, predict
+from restitution.runs.resolved import ResolvedRun
 
 GRIDS = ("10:0.05", "10:0.025", "10:0.0125", "16:0.025", "20:0.05", "20:0.025", "20:0.0125")
 EARLY_S, LATE_S = 4.4e-3, 8.4e-3

@@ -16,10 +16,10 @@ from rich.console import Console
 from rich.table import Table
 
 from restitution import datasets
-from restitution.calibration.recordings import recording
-from restitution.calibration.whole_trajectories import whole_trajectory
-from restitution.case_files import read_case
-from restitution.kept_runs import read_run
+from restitution.calibration.trajectories.recordings import recording
+from restitution.calibration.trajectories.whole_trajectories import whole_trajectory
+from restitution.cases import read_case
+from restitution.runs.kept import read_run
 from restitution.tracks import Track
 
 RECORD = "gondret2002_st152"

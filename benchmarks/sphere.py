@@ -19,13 +19,13 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from benchmarks import sphere_flows as flows
-from lbm.film import RESOLVED, lost_to_grid
-from lbm.wall_motion import FRACTION
+from lbm.problems import spheres as flows
+from lbm.spheres import RESOLVED, lost_to_grid
+from lbm.spheres.wall_motion import FRACTION
 from restitution import datasets
 from restitution.files import write_whole
 from restitution.laws.brenner_1961 import Brenner1961
-from restitution.report.fig2_checks import Check, read_checks, text_of
+from restitution.report.fig2.checks import Check, read_checks, text_of
 from restitution.runs import physics
 
 ARRAYS = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292}

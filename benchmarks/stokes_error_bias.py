@@ -16,10 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmarks.coverage import E_DRY, E_SIGMA, Case, K, draw
-from restitution.calibration.likelihood import Likelihood
-from restitution.calibration.maximum import maximise
-from restitution.calibration.plan import Plan
-from restitution.calibration.rebound_model import model_of
+from restitution.calibration import Plan, model_of
+from restitution.calibration.estimation.likelihood import Likelihood
+from restitution.calibration.estimation.maximum import maximise
 
 N, ERROR = 40, 0.05
 

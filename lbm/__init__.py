@@ -12,10 +12,10 @@ Everything is in lattice units (cell, time step, rest density 1); :mod:`lbm.scal
 The package knows nothing of :mod:`restitution`.
 """
 
-from lbm.bodies import Body
+from lbm.bodies.body import Body
+from lbm.bodies.fixed_body import FixedBody
 from lbm.errors import DivergenceError, InputError, OutputError, OutsideRangeWarning
-from lbm.faces import FreeSlip, Inlet, NoSlip, Outlet, Periodic
-from lbm.fixed_body import FixedBody
+from lbm.faces.records import FreeSlip, Inlet, NoSlip, Outlet, Periodic
 from lbm.rates import Rates
 from lbm.scales import FlowScales, Scales
 from lbm.simulation import Simulation

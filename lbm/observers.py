@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from lbm import arguments, fields
+from lbm import arguments
 from lbm.errors import DivergenceError, InputError
+from lbm.fluid import fields
+from lbm.fluid.stencil import CS2
+from lbm.io.vtkhdf import write_image
 from lbm.scales import Scales
-from lbm.stencil import CS2
-from lbm.vtkhdf import write_image
 
 if TYPE_CHECKING:
     from lbm.simulation import Simulation

@@ -97,7 +97,7 @@ class Rates:
         return (1 / self.e - 0.5) * 2 / 9
 
     def diagonal(self) -> np.ndarray:
-        """Rates in the order of :data:`lbm.moments.NAMES`; conserved moments have rate 0."""
+        """Rates in the order of :data:`lbm.fluid.moments.NAMES`; conserved moments have rate 0."""
         s = self
         odd = (0.0, s.q)
         return np.array(
@@ -105,7 +105,7 @@ class Rates:
         )
 
     def scaled(self, dtype) -> tuple:
-        """Factors of :func:`lbm.collision.collide`: s/|M|^2 by kind, then (1 - s/2) c/|M|^2 of Guo's force.
+        """Factors of :func:`lbm.fluid.collision.collide`: s/|M|^2 by kind, then (1 - s/2) c/|M|^2 of Guo's force.
 
         c is the moment of the force per unit of the product of velocity and force that the collision forms.
         """

@@ -10,16 +10,20 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from lbm import arguments, bodies, cache, checkpoint, face_passes, fields, kernels
-from lbm.bodies import Body
+from lbm import arguments
+from lbm.bodies import body as bodies
+from lbm.bodies.body import Body
 from lbm.errors import InputError
-from lbm.faces import Face, Periodic, resolve
-from lbm.interrupt import interrupts_deferred
-from lbm.lattice import Lattice
+from lbm.faces import passes
+from lbm.faces.records import Face, Periodic, resolve
+from lbm.fluid import cache, fields, kernels
+from lbm.fluid.lattice import Lattice
+from lbm.fluid.stencil import Q
+from lbm.io import checkpoint
+from lbm.io.interrupt import interrupts_deferred
+from lbm.io.progress import Progress
 from lbm.observers import DivergenceGuard, Observer, checked
-from lbm.progress import Progress
 from lbm.rates import Rates
-from lbm.stencil import Q
 
 __all__ = ["Force", "Simulation"]
 
@@ -75,7 +79,7 @@ class Simulation:
             self.lattice = Lattice(self._shape, tuple(f.kind for f in self._faces), self._dtype)
         except MemoryError:
             raise arguments.too_large(self._shape, self._dtype.itemsize) from None
-        self._face_passes = face_passes.passes(self._faces, self.lattice.grid)
+        self._face_passes = passes.passes(self._faces, self.lattice.grid)
         self._bodies: list[Body] = []
         self._rates, self._scaled_rates = rates, rates.scaled(self.dtype)
         self._running = self._half_done = False
@@ -174,12 +178,12 @@ class Simulation:
         return self.lattice.populations.nbytes / math.prod(self.shape)
 
     def save(self, path: Path | str) -> None:
-        """Write a checkpoint; see :mod:`lbm.checkpoint`."""
+        """Write a checkpoint; see :mod:`lbm.io.checkpoint`."""
         self._refuse_half_done()
         checkpoint.save(self, path)
 
     def restore(self, path: Path | str) -> None:
-        """Continue from a checkpoint of a simulation set up like this one; see :mod:`lbm.checkpoint`."""
+        """Continue from a checkpoint of a simulation set up like this one; see :mod:`lbm.io.checkpoint`."""
         self._refuse_within_run("restore")
         with interrupts_deferred():
             saved = checkpoint.read(self, path)  # refuses the file before anything is changed

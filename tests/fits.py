@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from restitution.calibration.observations import Observations
-from restitution.calibration.plan import Plan
-from restitution.calibration.rebound_model import model_of
+from restitution.calibration import Plan, model_of
+from restitution.calibration.reading.observations import Observations
 from restitution.stokes import Speed
 
 K, E_DRY = 18.0, 0.9

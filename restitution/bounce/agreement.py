@@ -11,8 +11,8 @@ record are brought together:
   could be chosen. An error of the approach does not enter, so it serves models that are released otherwise than
   the sphere was filmed. Quoted of simulated runs, beside which the point particle then is scored alike.
 
-A fit to whole trajectories has its own clock among its unknowns; its ``rms_d`` (:mod:`restitution.calibration.
-whole_trajectories`) is neither of these.
+A fit to whole trajectories has its own clock among its unknowns; its ``rms_d``
+(:mod:`restitution.calibration.trajectories.whole_trajectories`) is neither of these.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _CENTRE = 0.2
 
 
 class Flown(Protocol):
-    """A trajectory with the times of its contacts (:class:`restitution.bounces.Bounces`)."""
+    """A trajectory with the times of its contacts (:class:`restitution.impacts.bounces.Bounces`)."""
 
     time_s: NDArray
     gap_m: NDArray

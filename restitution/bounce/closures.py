@@ -35,7 +35,7 @@ class Closures:
 
     - with a ``rebound`` law or ``measured`` values the film, gap < ``film`` d, is a black box: no viscous force
       acts inside, only gravity and added mass, and e_eff multiplies the speed with which the motion outside, so
-      carried on, meets the wall. That is the ``far`` speed of :mod:`restitution.impact_speed`;
+      carried on, meets the wall. That is the ``far`` speed of :mod:`restitution.impacts.speed`;
     - with neither, all forces act down to the gap ``contact``, where the sphere rebounds with the dry restitution.
       On its way out the film holds no more than ``tension`` (:mod:`restitution.laws.cavitation`).
       ``lubrication=False`` keeps the resistance of the wall at its value at the edge of the film.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from restitution.console import show
+from restitution.commands.console import show
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -32,9 +32,9 @@ def run(args: argparse.Namespace) -> int | None:
     import time
 
     from restitution.bounce import IntegrationError
-    from restitution.case_files import read_case
+    from restitution.cases.reading import read_case
     from restitution.commands.results import folder_for, show_contacts
-    from restitution.point_particle import predict, write
+    from restitution.runs.point_particle import predict, write
     from restitution.runs.record import POINT_PARTICLE
 
     case = read_case(args.case)

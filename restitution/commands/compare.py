@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from restitution.commands import fit_options, options
-from restitution.console import show, show_rows
+from restitution.commands.console import show, show_rows
 
 if TYPE_CHECKING:
-    from restitution.calibration.ranking import Ranking, Row
+    from restitution.calibration.result.ranking import Ranking, Row
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -38,8 +38,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> None:
     """Print the ranking, best first, and what the data do not separate."""
     from restitution import laws
-    from restitution.calibration.impact_data import read
-    from restitution.calibration.ranking import rank
+    from restitution.calibration.reading.impact_data import read
+    from restitution.calibration.result.ranking import rank
     from restitution.errors import InputError
     from restitution.files import write_whole
 
@@ -112,7 +112,7 @@ COLUMNS = (
 
 
 def _csv(ranking: Ranking) -> str:
-    from restitution.table_writing import rows_text
+    from restitution.tables.writing import rows_text
 
     rows = [
         (

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.console import cell, show, show_facts, show_rows
+from restitution.commands.console import cell, show, show_facts, show_rows
 
 if TYPE_CHECKING:
-    from restitution.datasets_package import Resource
+    from restitution.datasets.package import Resource
 
 MOST_DEFECTS = 50
 
@@ -125,10 +125,10 @@ def _about(r: Resource) -> list[tuple[str, str]]:
 def run_validate(args: argparse.Namespace) -> None:
     """Print one line a valid file; raises :class:`InputError` with the defects otherwise."""
     from restitution import datasets
-    from restitution.datasets_checks import check_package, infer_schema
-    from restitution.datasets_package import read_package
+    from restitution.datasets.checks import check_package, infer_schema
+    from restitution.datasets.package import read_package
     from restitution.errors import Defect, InputError
-    from restitution.tables import check_table
+    from restitution.tables.reading import check_table
 
     columns = dict(args.column)
     path = None if args.path is None else Path(args.path)

@@ -7,12 +7,12 @@ import statistics
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
+from restitution.commands.console import show, show_rows
 from restitution.commands.predict import numbers
-from restitution.console import show, show_rows
 
 if TYPE_CHECKING:
-    from restitution.calibration.design import Gain
-    from restitution.calibration.fit_result import FitResult
+    from restitution.calibration.result.design import Gain
+    from restitution.calibration.result.fit_result import FitResult
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -67,8 +67,8 @@ def _shots(text: str) -> tuple[int, ...]:
 
 def run(args: argparse.Namespace) -> None:
     """Print the ranked experiments, and draw them where asked."""
-    from restitution.calibration import design
-    from restitution.calibration.fit_result import read_fit
+    from restitution.calibration.result import design
+    from restitution.calibration.result.fit_result import read_fit
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 
@@ -96,7 +96,7 @@ def run(args: argparse.Namespace) -> None:
     if not gains:
         raise InputError("no pair gives a Stokes number in the calibrated range: --height, --pairs, or --beyond")
     if args.plot:
-        from restitution.report.design_plot import draw
+        from restitution.report.fits.design_plot import draw
 
         drawing = draw(plan, gains, args.shots, target)
         write_whole(args.plot, drawing.svg if args.plot.endswith(".svg") else drawing.png)

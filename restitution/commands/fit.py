@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from restitution.commands import fit_options, fit_trajectory, options
-from restitution.console import show, show_facts
+from restitution.commands.console import show, show_facts
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -40,15 +40,15 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> None:
     """Fit, print, and write what was asked for."""
     if args.template:
-        from restitution.calibration.template import write_template
+        from restitution.calibration.reading.template import write_template
 
         for line in write_template(Path(args.template)):
             show(line)
         return
-    from restitution.calibration.fit_result import result_of
-    from restitution.calibration.fit_summary import describe
-    from restitution.calibration.fitting import estimate
-    from restitution.calibration.impact_data import read
+    from restitution.calibration.estimation.fitting import estimate
+    from restitution.calibration.reading.impact_data import read
+    from restitution.calibration.result.fit_result import result_of
+    from restitution.calibration.result.fit_summary import describe
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 
@@ -67,8 +67,8 @@ def run(args: argparse.Namespace) -> None:
     fit = estimate(fit_options.plan_of(args, law, args.law_stokes or observations.convention), observations)
     chain = None
     if args.posterior:
-        from restitution.calibration.fit_result import chain_of
-        from restitution.calibration.posterior import sample
+        from restitution.calibration.estimation.posterior import sample
+        from restitution.calibration.result.fit_result import chain_of
 
         chain = chain_of(sample(fit.likelihood, fit.maximum, args.seed, progress=sys.stderr.isatty()))
     result = result_of(fit, chain)
@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> None:
         write_whole(args.out, result.to_json())
     written = []
     if args.report:
-        from restitution.report import fit as report
+        from restitution.report.fits import report
 
         written = report.write(args.report, result)
     show_facts(describe(result))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from restitution.commands import options
 
 if TYPE_CHECKING:
-    from restitution.calibration.plan import Plan
-    from restitution.calibration.reading import Reading
+    from restitution.calibration.estimation.plan import Plan
+    from restitution.calibration.reading.reading import Reading
 
 
 def add_data(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +99,7 @@ def _prior(text: str) -> tuple[str, tuple[float, float]]:
 
 def reading_of(args: argparse.Namespace) -> Reading:
     """How the files are read, from the options."""
-    from restitution.calibration.reading import Reading
+    from restitution.calibration.reading.reading import Reading
     from restitution.conditions import read_conditions
     from restitution.stokes import Speed, convention
 
@@ -117,8 +117,8 @@ def reading_of(args: argparse.Namespace) -> Reading:
 
 def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, strict: bool = True) -> Plan:
     """What is estimated, from the options; without ``strict`` those that the law does not know are left out."""
-    from restitution.calibration.plan import Plan
-    from restitution.calibration.rebound_model import model_of
+    from restitution.calibration.estimation.plan import Plan
+    from restitution.calibration.estimation.rebound_model import model_of
 
     bounds = dict(args.bounds)
     model = model_of(law, bounds, law_stokes)
@@ -158,7 +158,7 @@ def _e_dry(text: str | None):
 def _normal(name: str, mean: float, sigma: float):
     import math
 
-    from restitution.calibration.parameters import Normal
+    from restitution.calibration.estimation.parameters import Normal
     from restitution.errors import Defect, InputError
 
     if not (math.isfinite(mean) and 0 < sigma < math.inf):

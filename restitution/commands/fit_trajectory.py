@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands import fit_options
-from restitution.console import show, show_facts, show_rows
+from restitution.commands.console import show, show_facts, show_rows
 
 if TYPE_CHECKING:
-    from restitution.calibration.fit_result import FitResult
-    from restitution.calibration.ranking import Ranking
-    from restitution.calibration.reading import Reading
-    from restitution.calibration.trajectory_fit import Measured, TrajectoryFit
+    from restitution.calibration.reading.reading import Reading
+    from restitution.calibration.result.fit_result import FitResult
+    from restitution.calibration.result.ranking import Ranking
+    from restitution.calibration.trajectories.fit import Measured, TrajectoryFit
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -35,10 +35,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> None:
     """Fit, print, and write what was asked for."""
-    from restitution.calibration.fit_result import chain_of
-    from restitution.calibration.fit_summary import describe
-    from restitution.calibration.recordings import read_recordings
-    from restitution.calibration.trajectory_fit import Measured, fit_law
+    from restitution.calibration.result.fit_result import chain_of
+    from restitution.calibration.result.fit_summary import describe
+    from restitution.calibration.trajectories.fit import Measured, fit_law
+    from restitution.calibration.trajectories.recordings import read_recordings
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
     from restitution.laws.source_abstract_eq4 import READINGS
@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> None:
     fit = fit_law(measured, plans[best], how)
     result = fit.result()
     if args.posterior:
-        from restitution.calibration.posterior import sample
+        from restitution.calibration.estimation.posterior import sample
 
         chain = sample(fit.fit.likelihood, fit.fit.maximum, args.seed, progress=sys.stderr.isatty())
         result = result.model_copy(update={"posterior": chain_of(chain)})
@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> None:
     show_facts(_slopes(fit))
     _show_distances(result)
     if args.report:
-        from restitution.report import trajectory_fit as report
+        from restitution.report.fits import trajectories as report
 
         for name in report.write(args.report, fit, result):
             show(str(Path(args.report) / name))
@@ -97,9 +97,9 @@ def _show_records(measured: Measured) -> None:
 
 def _rank(measured: Measured, plans: dict, how: Reading) -> str:
     """Every reading, with the wake and without; the best one under the model that the frames prefer."""
-    from restitution.calibration.fit_result import result_of
-    from restitution.calibration.ranking import rank
-    from restitution.calibration.trajectory_fit import law_fit, observations
+    from restitution.calibration.result.fit_result import result_of
+    from restitution.calibration.result.ranking import rank
+    from restitution.calibration.trajectories.fit import law_fit, observations
 
     best = ""
     for wake, found in measured.found.items():

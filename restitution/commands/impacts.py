@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.console import show, show_rows
+from restitution.commands.console import show, show_rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,8 +59,8 @@ def run(args: argparse.Namespace) -> None:
     """Print the impacts of a track, and write them where asked."""
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
-    from restitution.impacts import find_impacts
-    from restitution.table_writing import table_text
+    from restitution.impacts.find import find_impacts
+    from restitution.tables.writing import table_text
 
     if args.template:
         _write_template(Path(args.template))
@@ -100,9 +100,9 @@ def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
     """The track, its conditions and its kind."""
     from restitution import datasets
     from restitution.conditions import read_conditions
-    from restitution.datasets_checks import infer_schema
+    from restitution.datasets.checks import infer_schema
     from restitution.errors import Defect, InputError
-    from restitution.tables import read_table
+    from restitution.tables.reading import read_table
     from restitution.tracks import Track
 
     if args.sigma is not None and not 0 < args.sigma < math.inf:
@@ -160,7 +160,7 @@ def _write_template(folder: Path) -> None:
     from restitution import datasets
     from restitution.errors import Defect, InputError
     from restitution.files import write_folder
-    from restitution.table_writing import table_text
+    from restitution.tables.writing import table_text
 
     for name in ("track.csv", "conditions.toml"):
         if (folder / name).exists():

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.console import show, show_facts, show_rows
+from restitution.commands.console import show, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.laws import Law

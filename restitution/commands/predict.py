@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.console import show, show_rows
+from restitution.commands.console import show, show_rows
 
 if TYPE_CHECKING:
     from restitution.conditions import Conditions
@@ -82,8 +82,8 @@ def run(args: argparse.Namespace) -> None:
     """Print e_eff and its intervals, one line a speed."""
     import numpy as np
 
-    from restitution.calibration.fit_result import read_fit
-    from restitution.calibration.prediction import predict, stokes_of
+    from restitution.calibration.result.fit_result import read_fit
+    from restitution.calibration.result.prediction import predict, stokes_of
     from restitution.errors import InputError
 
     result = read_fit(args.fit)

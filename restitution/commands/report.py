@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from restitution.console import show
+from restitution.commands.console import show
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -58,12 +58,12 @@ def _add_runs(parser: argparse.ArgumentParser) -> None:
 def run_fig1(args: argparse.Namespace) -> None:
     """Write the Fig. 1 report and name its files."""
     from restitution.errors import Defect, InputError
-    from restitution.report import fig1_report
+    from restitution.report.fig1 import report
     from restitution.stokes import Speed
 
     if not args.out:
         raise InputError(Defect("names no folder", field="--out"))
-    for name in fig1_report.write(args.out, Speed(args.speed), args.runs):
+    for name in report.write(args.out, Speed(args.speed), args.runs):
         show(str(Path(args.out) / name))
 
 
@@ -73,7 +73,7 @@ def run_fig2(args: argparse.Namespace) -> int:
 
     from restitution.errors import Defect, InputError
     from restitution.files import check_folder
-    from restitution.report import fig2
+    from restitution.report.fig2 import content as fig2
 
     for option in ("out", "runs"):  # before runs are made that take minutes
         if not getattr(args, option):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from restitution.console import show, show_rows
+from restitution.commands.console import show, show_rows
 from restitution.errors import Defect, InputError
 from restitution.runs.record import SolverContact, model_in
 

@@ -6,10 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from restitution.console import show
+from restitution.commands.console import show
 
 if TYPE_CHECKING:
-    from restitution.case import Case
+    from restitution.cases.case import Case
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -45,11 +45,11 @@ def run(args: argparse.Namespace) -> int | None:
     """Run a case and say what came out."""
     import sys
 
-    from restitution.case_files import TEMPLATE, find, read_case
+    from restitution.cases.reading import TEMPLATE, find, read_case
     from restitution.commands.results import folder_for
     from restitution.errors import InputError, StoppedError
     from restitution.runs.record import RESOLVED
-    from restitution.simulate import CHECKPOINT, simulate
+    from restitution.runs.simulate import CHECKPOINT, simulate
 
     if args.list:
         _list()
@@ -82,8 +82,8 @@ def run(args: argparse.Namespace) -> int | None:
 
 
 def _list() -> None:
-    from restitution.case_files import names, read_case
-    from restitution.console import show_rows
+    from restitution.cases.reading import names, read_case
+    from restitution.commands.console import show_rows
 
     cases = [read_case(name) for name in names()]
     show_rows(
@@ -106,10 +106,10 @@ def show_result(folder: Path, case: Case) -> None:
     import numpy as np
 
     from restitution import datasets
-    from restitution.bounces import modelled
     from restitution.commands.results import show_contacts
+    from restitution.impacts.bounces import modelled
     from restitution.runs.record import read_record
-    from restitution.tables import read_table
+    from restitution.tables.reading import read_table
 
     about = read_record(folder)
     track = read_table(folder / "trajectory.csv", datasets.schema("trajectory"))

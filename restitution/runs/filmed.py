@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution import datasets
-from restitution.case import Case
-from restitution.impacts import find_impacts
+from restitution.cases.case import Case
+from restitution.impacts.find import find_impacts
 from restitution.stokes import MEASURED_SPEEDS
 from restitution.tracks import MINIMUM_FRAMES, Track
 

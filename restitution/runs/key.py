@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 
-from restitution.case import Case
+from restitution.cases.case import Case
 from restitution.runs.filmed import filmed
 from restitution.runs.program import program_hash
 from restitution.runs.told import told

@@ -21,16 +21,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from restitution import case_files, datasets
-from restitution.case import Case
+from restitution import datasets
+from restitution.cases import reading as case_files
+from restitution.cases.case import Case
 from restitution.files import write_whole
-from restitution.resolved import ResolvedRun, kernel_folder
 from restitution.runs.filmed import simulated_impacts
 from restitution.runs.program import program_hash
+from restitution.runs.resolved import ResolvedRun, kernel_folder
 
 TOLERANCES = {"float64": 1e-9, "float32": 1e-4, "impacts": 1e-6}
 """Largest differences that count as none, by precision of the run, and of impacts taken from a measured track."""
-PROBES = Path(case_files.__file__).parent / "cases" / "probes"
+PROBES = Path(case_files.__file__).parent / "probes"
 NUMBERS = Path(__file__).parent / "probes.json"
 IMPACTS = "impacts"
 """Name of the probe of what takes impacts from a track, which no run of the solver depends on."""

@@ -12,13 +12,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import lbm
-from lbm.contact import Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
-from lbm.film import Film, lost_to_grid
 from lbm.rates import PRESETS
 from lbm.scales import FlowScales
-from lbm.spheres import Sphere, Spheres
-from restitution.case import Case
-from restitution.lattice_closures import Normal, Tangential, normal_force, rebound, tangential_force
+from lbm.spheres import (
+    Contact,
+    DryRebound,
+    Film,
+    FilmRebound,
+    SoftContact,
+    Sphere,
+    Spheres,
+    lattice_added_mass,
+    lost_to_grid,
+)
+from restitution.cases.case import Case
+from restitution.runs.closures import Normal, Tangential, normal_force, rebound, tangential_force
 from restitution.stokes import H_FILM
 
 OUTPUT_D = 0.04

@@ -11,8 +11,8 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from restitution.case import Case
-from restitution.flow_pictures import AFTER_D, BEFORE_D, HALF_WIDTH_D, HEIGHT_D
+from restitution.cases.case import Case
+from restitution.runs.flow_pictures import AFTER_D, BEFORE_D, HALF_WIDTH_D, HEIGHT_D
 from restitution.runs.setup import Setup, set_up
 
 Entry = Sequence[float | str]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lbm.moments import NORMS, M, equilibrium
-from lbm.stencil import OPPOSITE, C, Q, W, mirrored
+from lbm.fluid.moments import NORMS, M, equilibrium
+from lbm.fluid.stencil import OPPOSITE, C, Q, W, mirrored
 
 
 def collide(f: np.ndarray, rates, force: np.ndarray) -> np.ndarray:

@@ -3,10 +3,11 @@ import signal
 import numpy as np
 import pytest
 
-from lbm import Body, DivergenceError, Inlet, InputError, NoSlip, Rates, Simulation, kernels
+from lbm import Body, DivergenceError, Inlet, InputError, NoSlip, Rates, Simulation
+from lbm.fluid import kernels
+from lbm.io.vtkhdf import write_image
 from lbm.observers import Average, Checkpoint, DivergenceGuard, FieldOutput, Probe, Sums
 from lbm.scales import Scales
-from lbm.vtkhdf import write_image
 
 RATES = Rates.two_relaxation_times(0.02)
 
@@ -401,8 +402,8 @@ def test_bad_images_are_refused_and_leave_no_file(tmp_path, fields, options):
 
 
 def test_progress_in_a_log_is_lines(capsys, monkeypatch):
-    monkeypatch.setattr("lbm.progress._SECONDS_PER_LINE", 0.0)
-    monkeypatch.setattr("lbm.progress._UPDATES_PER_REFRESH", 2 * 8**3)
+    monkeypatch.setattr("lbm.io.progress._SECONDS_PER_LINE", 0.0)
+    monkeypatch.setattr("lbm.io.progress._UPDATES_PER_REFRESH", 2 * 8**3)
     flow = _random_flow()
     flow.run(6, progress=True)
     lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("lbm")]

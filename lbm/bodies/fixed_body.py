@@ -1,0 +1,190 @@
+"""A solid body inside the box: a sparse list of links that cross its surface, reflected after every step.
+
+Linear interpolation of :mod:`lbm.bodies.reflection`, second order for curved and inclined surfaces. Force and
+torque on the body are those of Wen, Zhang, Tu, Wang & Fang, J. Comput. Phys. 266 (2014) 161, with f* what was sent
+along c_k to the surface at r, f' what comes back, u_w the surface's velocity::
+
+    F = sum (c_k - u_w) f* - (c_k' - u_w) f'          T = sum (r - r_0) x [(c_k - u_w) f* - (c_k' - u_w) f']
+
+The bulk kernel runs over the solid cells as well; what it computes there never reaches the fluid.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+from numba import prange
+
+from lbm import arguments
+from lbm.bodies.body import Body
+from lbm.bodies.reflection import linear
+from lbm.errors import InputError
+from lbm.fluid.cache import kernel
+from lbm.fluid.lattice import PERIODIC, SLIP, Grid, Lattice, incoming, outgoing
+from lbm.fluid.stencil import OPPOSITE, C, Q, W
+
+__all__ = ["FixedBody"]
+
+_CHUNK = 512  # links summed by one thread, in order
+
+
+class FixedBody(Body):
+    """A body at rest or with a given velocity of its surface; put it into the fluid by ``Simulation.add``.
+
+    Parameters
+    ----------
+    solid : boolean (nx, ny, nz), true where a cell centre lies inside.
+    fraction : (19, nx, ny, nz), the fraction q in (0, 1] of each link that starts in a fluid cell and ends in
+        a solid one, in the order of :data:`lbm.fluid.stencil.C` (other values are not looked at); None for
+        half-way.
+    velocity : of the surface, 3 components.
+    origin : point about which ``torque`` is taken. Along periodic axes levers lead to the nearest image, so
+        that a body may lie across such faces if ``origin`` lies in its middle.
+
+    ``force`` and ``torque`` (3,) are what the fluid did to the body in the last step, a mean over it, in
+    lattice units; pressure counts from that of the fluid at rest with density 1, as it must for a body that a
+    wall cuts. A body force on the fluid does not act on the body.
+
+    The body may touch the faces of the box: at a symmetry plane it meets its mirror image, and a link that
+    crosses a wall, an inlet or an outlet belongs to that face. An outlet looks two cells inwards: keep the
+    body that far from it. Density and velocity in solid cells mean nothing: leave them out of sums and pictures.
+
+    Raises :class:`InputError` for arguments of wrong shape; ``add`` raises it for fractions out of range.
+    """
+
+    def __init__(
+        self,
+        solid: np.ndarray,
+        fraction: np.ndarray | None = None,
+        velocity=(0.0, 0.0, 0.0),
+        origin=(0.0, 0.0, 0.0),
+    ):
+        self._solid = np.asarray(solid)
+        if self._solid.ndim != 3 or self._solid.dtype.kind not in "biu" or self._solid.all():
+            raise InputError(
+                f"solid: {self._solid.dtype} of shape {self._solid.shape}; give booleans on 3 axes, and some fluid"
+            )
+        self._solid = self._solid.astype(bool)
+        self.shape = self._solid.shape
+        try:
+            self._given = None if fraction is None else np.asarray(fraction, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"fraction = {arguments.shown(fraction)}: must be an array of numbers") from None
+        if self._given is not None and self._given.shape != (Q, *self.shape):
+            raise InputError(f"fraction: shape {self._given.shape} given, {(Q, *self.shape)} needed")
+        self.velocity = arguments.vector("velocity of a body", velocity).copy()
+        arguments.speed("velocity of a body", self.velocity, 0)
+        self.origin = arguments.vector("origin of a body", origin).copy()
+        self.force, self.torque = np.zeros(3), np.zeros(3)
+        self._grid: Grid | None = None
+
+    def prepare(self, lattice: Lattice, step: int) -> None:
+        """Find the links when the body is added."""
+        grid = lattice.grid
+        if self._grid is None:
+            if grid.shape != self.shape:
+                raise InputError(f"body on a grid of {self.shape} in a simulation of {grid.shape} cells")
+            self._find_links(grid)
+            self._grid = grid
+        elif grid != self._grid:
+            raise InputError("body: belongs to a simulation with other faces or precision; make one for each")
+
+    def _find_links(self, grid: Grid) -> None:
+        padded = _with_surroundings(self._solid, grid)
+        links, fractions = [], []
+        for k in range(1, Q):
+            cells = np.argwhere(~self._solid & _shifted(padded, C[k]))
+            q = np.full(len(cells), 0.5) if self._given is None else self._given[k][tuple(cells.T)]
+            if not ((q > 0) & (q <= 1)).all():
+                at = tuple(cells[np.argmin((q > 0) & (q <= 1))].tolist())
+                raise InputError(f"fraction: outside (0, 1] on the link along {tuple(C[k].tolist())} of cell {at}")
+            # Without a fluid cell behind to interpolate from, the surface is taken half-way.
+            behind_is_solid = _shifted(padded, -C[k])[tuple(cells.T)]
+            fractions.append(np.where((q < 0.5) & behind_is_solid, 0.5, q))
+            links.append(np.column_stack([cells, np.full(len(cells), k)]))
+        self.links = np.concatenate(links).astype(np.int64)
+        self.fraction = np.concatenate(fractions)
+        self._levers = self.links[:, :3] + 0.5 + self.fraction[:, None] * C[self.links[:, 3]] - self.origin
+        for axis, n in enumerate(grid.shape):
+            if _faces(grid)[axis][0] == PERIODIC:
+                self._levers[:, axis] -= n * np.round(self._levers[:, axis] / n)
+        self._sums = np.zeros((-(-len(self.links) // _CHUNK), 6))
+        self._given = None  # the links hold what was used of it
+
+    def __call__(self, lattice: Lattice, step: int, force) -> None:
+        """Reflect the links and collect force and torque."""
+        _reflect(
+            lattice.populations, lattice.grid, lattice.parity, self.links, self.fraction, self.velocity,
+            self._levers, self._sums,
+        )  # fmt: skip
+        total = self._sums.sum(axis=0)
+        self.force, self.torque = total[:3], total[3:]
+
+    def describe(self) -> dict:
+        """Hash of links and fractions, the surface's velocity, the torque's origin."""
+        if self._grid is None:
+            raise InputError("body: its links are known once it is added to a simulation")
+        surface = hashlib.sha256(self.links.tobytes() + self.fraction.tobytes()).hexdigest()[:16]
+        return {"surface": surface, "velocity": self.velocity.tolist(), "origin": self.origin.tolist()}
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Force and torque of the last step."""
+        return {"force": self.force, "torque": self.torque}
+
+    def set_state(self, state: dict[str, np.ndarray]) -> None:
+        """Force and torque of the last step."""
+        self.force, self.torque = state["force"], state["torque"]
+
+
+def _faces(grid: Grid) -> tuple[tuple[int, int], ...]:
+    return (grid.x_low, grid.x_high), (grid.y_low, grid.y_high), (grid.z_low, grid.z_high)
+
+
+def _with_surroundings(solid: np.ndarray, grid: Grid) -> np.ndarray:
+    """``solid`` and one layer around it: what a link through a face ends in; beyond a wall, nothing."""
+    for axis, kinds in enumerate(_faces(grid)):
+        first, last = solid.take([0], axis), solid.take([-1], axis)
+        layers = [
+            {PERIODIC: image, SLIP: mirror}.get(kind, np.zeros_like(mirror))
+            for kind, image, mirror in zip(kinds, (last, first), (first, last), strict=True)
+        ]
+        solid = np.concatenate([layers[0], solid, layers[1]], axis)
+    return solid
+
+
+def _shifted(padded: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Value of ``padded`` at x + c for each cell x of the box."""
+    return padded[tuple(slice(1 + d, n - 1 + d) for d, n in zip(c, padded.shape, strict=True))]
+
+
+@kernel
+def _reflect(populations, grid, parity, links, fraction, u, levers, sums):
+    for chunk in prange(sums.shape[0]):
+        fx = fy = fz = tx = ty = tz = 0.0
+        first = np.int64(chunk) * _CHUNK
+        for link in range(first, min(first + _CHUNK, links.shape[0])):
+            x, y, z, k = links[link]
+            back = OPPOSITE[k]
+            sent = np.float64(populations[outgoing(grid, parity, k, x, y, z)])
+            sent_back = np.float64(populations[outgoing(grid, parity, back, x, y, z)])
+            arrived = np.float64(populations[incoming(grid, parity, k, x, y, z)])
+            push = C[k, 0] * u[0] + C[k, 1] * u[1] + C[k, 2] * u[2]
+            if push != 0:
+                rho = 1.0
+                for i in range(Q):
+                    rho += populations[outgoing(grid, parity, i, x, y, z)]
+                push *= 6 * W[k] * rho
+            value = linear(fraction[link], sent, sent_back, arrived, push)
+            populations[incoming(grid, parity, back, x, y, z)] = value
+            both, lost = sent + value, sent - value
+            px, py, pz = C[k, 0] * both - u[0] * lost, C[k, 1] * both - u[1] * lost, C[k, 2] * both - u[2] * lost
+            rx, ry, rz = levers[link]
+            fx += px
+            fy += py
+            fz += pz
+            tx += ry * pz - rz * py
+            ty += rz * px - rx * pz
+            tz += rx * py - ry * px
+        sums[chunk, 0], sums[chunk, 1], sums[chunk, 2] = fx, fy, fz
+        sums[chunk, 3], sums[chunk, 4], sums[chunk, 5] = tx, ty, tz

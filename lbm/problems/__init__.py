@@ -1,0 +1,14 @@
+"""Flows whose answer is known.
+
+:mod:`~lbm.problems.flows` has the exact solutions without a sphere, handed on here; :mod:`~lbm.problems.spheres`
+sets up flows around spheres and measures what references are given for.
+"""
+
+from lbm.problems.flows import PROBLEMS, Case, Preset, Problem
+
+__all__ = [
+    "PROBLEMS",
+    "Case",
+    "Preset",
+    "Problem",
+]

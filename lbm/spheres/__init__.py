@@ -1,0 +1,26 @@
+"""Spheres that move in the fluid and meet walls.
+
+Read :mod:`~lbm.spheres.spheres` (a step of a sphere), then its parts in their order: :mod:`~lbm.spheres.surface`,
+:mod:`~lbm.spheres.exchange` and :mod:`~lbm.spheres.refill` (sphere and fluid), :mod:`~lbm.spheres.film`,
+:mod:`~lbm.spheres.contact` and :mod:`~lbm.spheres.wall_motion` (sphere and wall). :mod:`~lbm.spheres.sampling`
+tells one film or contact from another, for checkpoints.
+"""
+
+from lbm.spheres.contact import Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
+from lbm.spheres.film import RESOLVED, Film, lost_to_grid
+from lbm.spheres.spheres import COLUMNS, Sphere, SphereImpact, Spheres
+
+__all__ = [
+    "COLUMNS",
+    "RESOLVED",
+    "Contact",
+    "DryRebound",
+    "Film",
+    "FilmRebound",
+    "SoftContact",
+    "Sphere",
+    "SphereImpact",
+    "Spheres",
+    "lattice_added_mass",
+    "lost_to_grid",
+]

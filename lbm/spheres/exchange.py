@@ -1,0 +1,110 @@
+"""Momentum exchange of spheres and fluid: links are reflected at the surface, force and torque collected.
+
+The force on the sphere is that of Wen, Zhang, Tu, Wang & Fang, J. Comput. Phys. 266 (2014) 161, which does not
+depend on the frame::
+
+    F = sum over links of (c_k - u_w) f*_k - (c_k' - u_w) f_k'
+
+taken of the deviations from rest: the pressure of the fluid at rest, which sums to zero over a closed
+surface, would press a sphere that touches a wall against it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit, prange
+
+from lbm.bodies.reflection import reflect
+from lbm.fluid.cache import kernel
+from lbm.fluid.lattice import incoming, outgoing
+from lbm.fluid.stencil import OPPOSITE, C, Q, W
+from lbm.spheres.surface import REACH, cut, inside, inside_any, wrapped
+
+
+@kernel
+def exchange(populations, grid, parity, scheme, centres, radii, velocities, spins, s, sums):
+    """Reflect all links of sphere ``s``; its ``sums`` (planes, 6) get force and torque plane by plane.
+
+    Sums over planes are added in their order by the caller, so they do not depend on the number of threads.
+    """
+    radius = radii[s]
+    first = np.int64(math.floor(centres[s, 2] - radius - REACH - 0.5))
+    for plane in prange(sums.shape[0]):
+        for i in range(6):
+            sums[plane, i] = 0.0
+        _exchange_plane(
+            populations, grid, parity, scheme, centres, radii, velocities[s], spins[s], s,
+            first + np.int64(plane), sums[plane],
+        )  # fmt: skip
+
+
+@njit(error_model="numpy", fastmath={"contract"})
+def _exchange_plane(populations, grid, parity, scheme, centres, radii, velocity, spin, s, plane, sums):
+    radius, reach = radii[s], radii[s] + REACH
+    cx, cy, cz = centres[s, 0], centres[s, 1], centres[s, 2]
+    z = wrapped(plane, grid.nz, grid.z_low)
+    dz = plane + 0.5 - cz
+    if z < 0 or abs(dz) > reach:
+        return
+    half_y = math.sqrt(reach * reach - dz * dz)
+    for row in range(math.floor(cy - half_y - 0.5), math.ceil(cy + half_y - 0.5) + 1):
+        y = wrapped(row, grid.ny, grid.y_low)
+        dy = row + 0.5 - cy
+        left = reach * reach - dz * dz - dy * dy
+        if y < 0 or left < 0:
+            continue
+        half_x = math.sqrt(left)
+        for cell in range(math.floor(cx - half_x - 0.5), math.ceil(cx + half_x - 0.5) + 1):
+            x = wrapped(cell, grid.nx, grid.x_low)
+            dx = cell + 0.5 - cx
+            if x < 0 or inside(dx, dy, dz, radius) or inside_any(grid, x, y, z, centres, radii):
+                continue
+            rho = 0.0
+            for k in range(1, Q):
+                if not inside(dx + C[k, 0], dy + C[k, 1], dz + C[k, 2], radius):
+                    continue
+                if (
+                    wrapped(cell + C[k, 0], grid.nx, grid.x_low) < 0
+                    or wrapped(row + C[k, 1], grid.ny, grid.y_low) < 0
+                    or wrapped(plane + C[k, 2], grid.nz, grid.z_low) < 0
+                ):
+                    continue  # the wall lies in between
+                if rho == 0.0:
+                    rho = 1.0
+                    for i in range(Q):
+                        rho += populations[outgoing(grid, parity, i, x, y, z)]
+                q = cut(dx, dy, dz, k, radius)
+                rx, ry, rz = dx + q * C[k, 0], dy + q * C[k, 1], dz + q * C[k, 2]
+                ux = velocity[0] + spin[1] * rz - spin[2] * ry
+                uy = velocity[1] + spin[2] * rx - spin[0] * rz
+                uz = velocity[2] + spin[0] * ry - spin[1] * rx
+                back = OPPOSITE[k]
+                sent = np.float64(populations[outgoing(grid, parity, k, x, y, z)])
+                sent_back = np.float64(populations[outgoing(grid, parity, back, x, y, z)])
+                arrived = np.float64(populations[incoming(grid, parity, k, x, y, z)])
+                if _solid_behind(grid, cell, row, plane, k, centres, radii):
+                    q, arrived = 0.5, sent_back  # nothing arrives from behind: half-way
+                push = 6 * W[k] * rho * (C[k, 0] * ux + C[k, 1] * uy + C[k, 2] * uz)
+                value = reflect(scheme, q, sent, sent_back, arrived, push)
+                populations[incoming(grid, parity, back, x, y, z)] = value
+                # What was sent into the sphere goes no further: its cells are swept too, and stay at rest.
+                populations[outgoing(grid, parity, k, x, y, z)] = 0.0
+                both, lost = sent + value, sent - value
+                fx, fy, fz = C[k, 0] * both - ux * lost, C[k, 1] * both - uy * lost, C[k, 2] * both - uz * lost
+                sums[0] += fx
+                sums[1] += fy
+                sums[2] += fz
+                sums[3] += ry * fz - rz * fy
+                sums[4] += rz * fx - rx * fz
+                sums[5] += rx * fy - ry * fx
+
+
+@njit
+def _solid_behind(grid, x, y, z, k, centres, radii):
+    """Whether the cell behind (x, y, z), against c_k, lies inside a sphere."""
+    i = wrapped(x - C[k, 0], grid.nx, grid.x_low)
+    j = wrapped(y - C[k, 1], grid.ny, grid.y_low)
+    l = wrapped(z - C[k, 2], grid.nz, grid.z_low)  # noqa: E741
+    return i >= 0 and j >= 0 and l >= 0 and inside_any(grid, i, j, l, centres, radii)

@@ -1,0 +1,261 @@
+"""Spheres that move in the fluid: what happens to them after each step of the fluid.
+
+1. The fluid's populations are reflected at the surfaces, which gives force and torque
+  (:mod:`lbm.spheres.exchange`).
+2. Each sphere moves (Crank-Nicolson), near a wall in sub-steps (:mod:`lbm.spheres.wall_motion`)::
+
+       v' = v + F/m,  x' = x + (v + v')/2,  (I + I_f) (omega' - omega) = T + I_f (omega - omega_before)
+
+   F with gravity and buoyancy; the fluid's force is its momentum exchange over the very step. I_f is the moment
+   of inertia of the displaced fluid: the last two terms cancel for all but changes from step to step, which in
+   fluid of low viscosity would otherwise grow, the fluid having no pressure to pass on a torque at once.
+3. Cells that come free are filled (:mod:`lbm.spheres.refill`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lbm.bodies.reflection import SCHEMES
+from lbm.errors import InputError
+from lbm.fluid.lattice import BOUNCE, PERIODIC, Lattice
+from lbm.spheres.contact import Contact, Impact
+from lbm.spheres.exchange import exchange
+from lbm.spheres.film import Film
+from lbm.spheres.refill import refill
+from lbm.spheres.sampling import sampled
+from lbm.spheres.surface import REACH
+from lbm.spheres.wall_motion import FRACTION, motion_at_wall
+
+Drive = Callable[[float, float], Sequence[float] | None]
+COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
+"""Columns of :meth:`Spheres.track`; f and t are force and torque of the fluid."""
+_SMALLEST_RADIUS = 2.0
+_STEPS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
+"""Steps at which a description samples the drive."""
+_GAPS = (0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 0.9, 1.1, 1.5, 3.0)
+"""Gaps in radii at which it does."""
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Start of one sphere: ``radius`` in cells, ``density`` over the fluid's, and its motion."""
+
+    radius: float
+    density: float
+    position: tuple[float, float, float]
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    spin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class SphereImpact(Impact):
+    """An impact of sphere number ``sphere`` at the wall ``face``, such as "z-"."""
+
+    sphere: int = 0
+    face: str = ""
+
+
+class Spheres:
+    """Moving spheres for one :class:`lbm.Simulation`; lattice units.
+
+    Parameters
+    ----------
+    spheres : where and how they start.
+    gravity : acceleration, 3 components; buoyancy follows, the fluid itself is not accelerated.
+    film, contact : what acts near no-slip walls beyond the fluid's force; without contact nothing stops it.
+    drive : ``drive(step, gap)`` gives the velocity of all spheres at the end of that step, or None, which sets
+        them free for good. Like all functions given here it depends on its arguments alone, for a checkpoint
+        knows it by what it gives at some of them.
+    interpolation : a scheme of :mod:`lbm.bodies.reflection`.
+    fraction : size of the sub-steps near a wall; see :mod:`lbm.spheres.wall_motion`.
+    """
+
+    def __init__(
+        self,
+        spheres: Sequence[Sphere],
+        *,
+        gravity: Sequence[float] = (0.0, 0.0, 0.0),
+        film: Film | None = None,
+        contact: Contact | None = None,
+        drive: Drive | None = None,
+        interpolation: str = "linear",
+        fraction: float = FRACTION,
+    ):
+        if interpolation not in SCHEMES:
+            raise InputError(f"interpolation {interpolation!r} unknown; known: {', '.join(SCHEMES)}")
+        self.radii = np.array([_positive("radius", s.radius) for s in spheres])
+        if self.radii.size == 0 or self.radii.min() < _SMALLEST_RADIUS:
+            raise InputError(f"radius: at least {_SMALLEST_RADIUS:g} cells are needed to resolve a sphere")
+        self.volumes = 4 / 3 * np.pi * self.radii**3
+        self.masses = self.volumes * [_positive("density", s.density) for s in spheres]
+        self.centres = _vectors("position", [s.position for s in spheres])
+        self.velocities = _vectors("velocity", [s.velocity for s in spheres])
+        self.spins = _vectors("spin", [s.spin for s in spheres])
+        self.spin_changes = np.zeros_like(self.spins)
+        self.gravity = _vectors("gravity", [gravity])[0]
+        self.film, self.contact, self.drive = film, contact, drive
+        self.fraction = fraction
+        self.scheme = SCHEMES[interpolation]
+        self.forces, self.torques = np.zeros_like(self.centres), np.zeros_like(self.centres)
+        self.impacts: list[SphereImpact] = []
+        self._at_walls = {
+            (s, face): motion_at_wall(film, contact, fraction) for s in range(len(spheres)) for face in range(6)
+        }
+        self._free = drive is None
+        self._tracks: list[list[tuple[float, ...]]] = [[] for _ in spheres]
+        self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 6)) for r in self.radii]
+
+    def track(self, sphere: int = 0) -> dict[str, np.ndarray]:
+        """Motion of one sphere, a row a step: :data:`COLUMNS` to arrays. ``gap`` is that to the nearest wall."""
+        rows = np.array(self._tracks[sphere]).reshape(-1, len(COLUMNS))
+        return {name: rows[:, i].copy() for i, name in enumerate(COLUMNS)}
+
+    def prepare(self, lattice: Lattice, step: int) -> None:
+        """Refuse spheres that the box cannot hold; raises :class:`InputError`."""
+        if step > 0:
+            return
+        grid = lattice.grid
+        faces = np.array([grid.x_low, grid.x_high, grid.y_low, grid.y_high, grid.z_low, grid.z_high])
+        for s, (r, centre) in enumerate(zip(self.radii, self.centres, strict=True)):
+            if 2 * (r + REACH) > min(grid.shape):
+                raise InputError(f"sphere {s}: diameter {2 * r:g} cells in a box of {grid.shape}: enlarge the box")
+            for face in np.flatnonzero(faces != PERIODIC):
+                gap = _gap(centre, r, face, grid.shape)
+                if gap < 0:
+                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {_FACES[face]}")
+            for other in range(s):
+                apart = self.centres[other] - centre
+                apart -= np.where(faces[::2] == PERIODIC, grid.shape * np.round(apart / grid.shape), 0.0)
+                if np.linalg.norm(apart) < r + self.radii[other]:
+                    raise InputError(f"spheres {other} and {s} overlap")
+
+    def __call__(self, lattice: Lattice, step: int, force) -> None:
+        """Exchange momentum, move, refill."""
+        grid, populations, parity = lattice.grid, lattice.populations, lattice.parity
+        surfaces = self.centres, self.radii, self.velocities, self.spins
+        for s, sums in enumerate(self._sums):
+            exchange(populations, grid, parity, self.scheme, *surfaces, s, sums)
+            self.forces[s], self.torques[s] = np.add.reduce(sums[:, :3]), np.add.reduce(sums[:, 3:])
+        before = self.centres.copy()
+        for s in range(len(self.radii)):
+            self._move(s, float(step), grid)
+        for s in range(len(self.radii)):
+            refill(populations, grid, parity, before, *surfaces, s)
+
+    def _move(self, s: int, step: float, grid) -> None:
+        walls = [f for f, kind in enumerate(grid[6:]) if kind == BOUNCE]
+        gaps = {f: _gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls}
+        nearest = min(gaps.values(), default=math.inf)
+        given = None if self._free else self.drive(step + 1, nearest)
+        v = self.velocities[s].copy()
+        if given is not None:
+            new = _vectors("drive", [given])[0]
+            self.centres[s] += 0.5 * (v + new)
+        else:
+            self._free = True
+            new = self._free_motion(s, step, v, gaps)
+        self.velocities[s] = new
+        nearest = min((_gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls), default=math.nan)
+        row = (step + 1, nearest, *self.centres[s], *new, *self.spins[s], *self.forces[s], *self.torques[s])
+        self._tracks[s].append(tuple(float(x) for x in row))
+
+    def _free_motion(self, s: int, step: float, v: np.ndarray, gaps: dict[int, float]) -> np.ndarray:
+        """Moves sphere ``s`` from velocity ``v``; returns the new one."""
+        mass, radius = self.masses[s], self.radii[s]
+        weight = (mass - self.volumes[s]) * self.gravity
+        force = self.forces[s].copy()
+        torque = self.torques[s].copy()
+        near = {f: gap for f, gap in gaps.items() if self._at_walls[s, f].matters(gap, _away(f) * v[f // 2])}
+        for f, gap in near.items():
+            if self.film is not None:
+                push, turn = self.film.along(gap, v, self.spins[s], _away(f) * np.eye(3)[f // 2])
+                force, torque = force + push, torque + turn
+        new = v + (force + weight) / mass
+        centre = self.centres[s] + 0.5 * (v + new)
+        for f, gap in near.items():
+            axis, sign = f // 2, _away(f)
+            after, speed, impacts = self._at_walls[s, f].step(
+                step, gap, sign * v[axis], sign * force[axis], sign * weight[axis], mass
+            )
+            new[axis] = sign * speed
+            centre[axis] = self.centres[s, axis] + sign * (after - gap)
+            self.impacts += [
+                SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=_FACES[f]) for i in impacts
+            ]
+        self.centres[s] = centre
+        shell = 0.4 * self.volumes[s] * radius**2
+        self.spin_changes[s] = (torque + shell * self.spin_changes[s]) / (0.4 * mass * radius**2 + shell)
+        self.spins[s] += self.spin_changes[s]
+        return new
+
+    def describe(self) -> dict:
+        """Every number that decides the motion; functions by what they give at a few arguments."""
+        return {
+            "radii": self.radii.tolist(),
+            "masses": self.masses.tolist(),
+            "gravity": self.gravity.tolist(),
+            "interpolation": self.scheme,
+            "film": None if self.film is None else self.film.describe(),
+            "contact": None if self.contact is None else self.contact.describe(),
+            "drive": sampled(self.drive, [(step, r * self.radii[0]) for step in _STEPS for r in _GAPS]),
+            "fraction": self.fraction,
+        }
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What changes in time."""
+        return {
+            "motion": np.hstack(self._moving()),
+            "at_walls": np.array([motion.numbers() for motion in self._at_walls.values()]),
+            "impacts": np.array(
+                [(i.step, i.speed_in, i.speed_out, i.sphere, _FACES.index(i.face)) for i in self.impacts]
+            ).reshape(-1, 5),
+            "free": np.array([self._free]),
+            "tracks": np.array(self._tracks),
+        }
+
+    def _moving(self) -> tuple[np.ndarray, ...]:
+        return self.centres, self.velocities, self.spins, self.spin_changes, self.forces, self.torques
+
+    def set_state(self, state: dict[str, np.ndarray]) -> None:
+        """Continue from a :meth:`state`."""
+        for own, saved in zip(self._moving(), np.hsplit(state["motion"], 6), strict=True):
+            own[...] = saved
+        for motion, numbers in zip(self._at_walls.values(), state["at_walls"], strict=True):
+            motion.remember(numbers)
+        self.impacts = [
+            SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=_FACES[int(row[4])])
+            for row in state["impacts"]
+        ]
+        self._free = bool(state["free"][0])
+        self._tracks = [[tuple(float(x) for x in row) for row in track] for track in state["tracks"]]
+
+
+_FACES = ("x-", "x+", "y-", "y+", "z-", "z+")
+
+
+def _away(face: int) -> int:
+    """Sign of the direction away from a face."""
+    return 1 - 2 * (face % 2)
+
+
+def _gap(centre: np.ndarray, radius: float, face: int, shape: tuple[int, int, int]) -> float:
+    axis = face // 2
+    return float(centre[axis] - radius if face % 2 == 0 else shape[axis] - centre[axis] - radius)
+
+
+def _positive(name: str, value: float) -> float:
+    if not (math.isfinite(value) and value > 0):
+        raise InputError(f"{name} = {value!r}: must be finite and greater than 0")
+    return float(value)
+
+
+def _vectors(name: str, given) -> np.ndarray:
+    vectors = np.array(given, dtype=float)
+    if vectors.ndim != 2 or vectors.shape[1] != 3 or not np.isfinite(vectors).all():
+        raise InputError(f"{name} = {given!r}: give 3 finite components")
+    return vectors

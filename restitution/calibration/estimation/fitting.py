@@ -1,0 +1,107 @@
+"""One fit: the estimate under a plan, its intervals, and what a reader must know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.calibration.estimation.first_guess import first_guess
+from restitution.calibration.estimation.identifiability import check_bounds, check_flat
+from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
+from restitution.calibration.estimation.maximum import LEVELS, Maximum, Thresholds, maximise
+from restitution.calibration.estimation.plan import Plan
+from restitution.calibration.estimation.small_sample import Restriction, threshold
+from restitution.calibration.reading.observations import Observations
+from restitution.calibration.showing import Showing, Table, counted
+
+
+@dataclass(frozen=True, repr=False)
+class Fit(Showing):
+    """An estimate with what it came from; ``freedom`` are Satterthwaite's degrees of freedom, by parameter."""
+
+    plan: Plan
+    likelihood: Likelihood
+    maximum: Maximum
+    freedom: NDArray
+    restricted: bool
+    notes: tuple[str, ...]
+
+    def shown(self) -> Table:
+        """The estimates with their standard errors; intervals and all else are in its result."""
+        m = self.maximum
+        cells = zip(m.parameters, m.values, m.sigma, strict=True)
+        rows = [
+            (p.name, f"{value:.4g}", f"{sigma:.2g}", "" if p.unit == "1" else p.unit) for p, value, sigma in cells
+        ]
+        title = f"fit of {self.likelihood.model.name} to {counted(len(self.likelihood.observations), 'impact')}"
+        return Table(title, ("parameter", "value", "sigma", "unit"), rows)
+
+
+def estimate(
+    plan: Plan,
+    observations: Observations,
+    intervals: bool | Collection[str] = True,
+    restricted: bool = True,
+    near: Maximum | None = None,
+    covariance: bool = True,
+) -> Fit:
+    """Maximum (restricted) likelihood. ``restricted=False`` gives the plain maximum, whose value ranks laws.
+
+    ``intervals`` may name the parameters that are to have one. ``near`` is the estimate of a similar
+    fit with the same parameters, to start from.
+    """
+    likelihood = plan.likelihood(observations)
+    parameters = likelihood.parameters
+    warm = near is not None
+    start, steps = (near.values, near.sigma) if warm else (first_guess(likelihood), None)
+    if not warm:
+        check_flat(likelihood, start)
+    restriction = None
+    if restricted and any(not p.mean for p in parameters):
+        if not warm:
+            start = maximise(likelihood, parameters, start, covariance=False).values
+        restriction = Restriction.at(likelihood, start)
+        # Zero is a stationary point of a standard deviation: the search must not begin there.
+        start = np.where([p.mean for p in parameters], start, np.maximum(start, 1e-3))
+
+    def function(values: NDArray) -> float:
+        return likelihood(values) + (restriction(values) if restriction else 0.0)
+
+    freedom = np.full(len(parameters), np.inf)
+    if not intervals:
+        found = maximise(function, parameters, start, covariance=covariance, steps=steps)
+        return Fit(plan, likelihood, found, freedom, restriction is not None, ())
+    found = maximise(function, parameters, start)
+    mean = np.array([p.mean for p in parameters], bool)
+    check_bounds(found)
+    if restriction is not None:
+        freedom[mean] = restriction.degrees_of_freedom(found.values)
+    wanted = [intervals is True or p.name in intervals for p in parameters]
+    rises = {
+        level: [threshold(level, nu) if want else None for nu, want in zip(freedom, wanted, strict=True)]
+        for level in LEVELS
+    }
+    found = maximise(function, parameters, found.values, Thresholds(rises))
+    return Fit(plan, likelihood, found, freedom, restriction is not None, _notes(likelihood, found))
+
+
+def _notes(likelihood: Likelihood, found: Maximum) -> tuple[str, ...]:
+    """What a reader must know of this estimate."""
+    o, notes = likelihood.observations, list(likelihood.observations.notes)
+    if o.speed != likelihood.model.speed and likelihood.model.speed != "unstated":
+        notes.append(
+            f"{likelihood.model.name} is meant for the {likelihood.model.speed} impact speed; the data have the "
+            f"{o.speed} speed: the parameters hold for that one"
+        )
+    for j, p in enumerate(found.parameters):
+        if p.mean and (side := found.at_bound(j)):
+            notes.append(f"{p.name} lies on its {side} bound: its interval is one-sided")
+        if p.name == OFFSET and len(likelihood.source_names) < 5:
+            few = len(likelihood.source_names)
+            notes.append(f"{few} sources say little of how sources differ: intervals are wide for it")
+    if likelihood.robust:
+        notes.append("robust: Student's t with 4 degrees of freedom, no correction for small samples")
+    return tuple(notes)

@@ -1,0 +1,212 @@
+r"""The likelihood of a set of impacts under a law, written as the statistics are.
+
+Impact i has the Stokes number St_i and the restitution e_i, in error by sigma_St and sigma_e with correlation rho;
+the particles differ from one another by the scatter tau; all impacts of a source (a laboratory, a record) share an
+offset b_s. With the law f, its exact slope f' and the shrinkage b_s ~ N(0, omega^2),
+
+    e_i = f(St_i) + b_s + error,    var_i = sigma_e^2 + f'^2 sigma_St^2 - 2 rho f' sigma_e sigma_St + tau^2,
+
+    -2 ln L = sum_i [ (e_i - f_i - b_s)^2 / var_i + ln(2 pi var_i) ]        given the offsets.
+
+The term ln var_i belongs to it: var_i depends on the parameters through f' and tau, and without it any misfit
+could be bought with a steeper law. The offsets are integrated out, exactly: with w_i = 1/var_i, W = sum w_i over
+the source and r_i = e_i - f_i,
+
+    -2 ln L_s = sum w_i r_i^2 - omega^2 (sum w_i r_i)^2/(1 + omega^2 W) + sum ln(2 pi var_i) + ln(1 + omega^2 W).
+
+An impact without a rebound is censored, not a zero: all that is known is e_i <= u_i, with the probability
+Phi[(u_i - f_i - b_s)/sqrt(var_i)], averaged over what the other impacts of its source leave open of b_s.
+
+Robust: Student's t with 4 degrees of freedom and scale sqrt(var_i) in place of the normal, so that an outlier
+weighs little; the offset then is integrated by quadrature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaln, log_ndtr, stdtr
+
+from restitution.calibration.estimation.parameters import Parameter
+from restitution.calibration.estimation.rebound_model import ReboundModel
+from restitution.calibration.reading.observations import Observations
+
+SCATTER, OFFSET = "scatter", "source_offset"
+STUDENT = 4.0
+"""Degrees of freedom of the robust option."""
+_LEAST_VARIANCE = 1e-24
+_NODES = np.linspace(-8.0, 8.0, 65)
+"""Of the trapezoidal rule over an offset, in standard deviations; exact to rounding for smooth integrands."""
+_LOG_T = gammaln((STUDENT + 1) / 2) - gammaln(STUDENT / 2) - 0.5 * np.log(STUDENT * np.pi)
+
+
+def residual_variance(slope: NDArray, e_sigma: NDArray, St_sigma: NDArray, correlation: NDArray) -> NDArray:
+    """Of e - f(St) by the errors of e and St: sigma_e^2 + f'^2 sigma_St^2 - 2 rho f' sigma_e sigma_St."""
+    from_St = slope * St_sigma
+    return e_sigma**2 + from_St**2 - 2 * correlation * from_St * e_sigma
+
+
+@dataclass(frozen=True)
+class Likelihood:
+    """-ln L as a function of the values of ``parameters``.
+
+    A parameter of the law, or ``e_dry``, is found by its name, or by ``name[level]`` where ``separate`` gives the
+    label it is separate by. ``fixed`` are those that are not estimated; ``e_dry`` may be one number an impact.
+    """
+
+    model: ReboundModel
+    observations: Observations
+    parameters: tuple[Parameter, ...]
+    fixed: Mapping[str, float | NDArray]
+    separate: Mapping[str, str]
+    robust: bool = False
+    log_variance: bool = True
+    """Off only to reproduce least-squares solutions that leave the term out."""
+
+    def __call__(self, values: Sequence[float] | NDArray) -> float:
+        """-ln L; infinity where the law has no finite value."""
+        f, variance, omega = self.moments(np.asarray(values, float))
+        if not (np.isfinite(f).all() and np.isfinite(variance).all()):
+            return np.inf
+        seen = self._seen
+        r, v, source = (self.observations.e - f)[seen], variance[seen], self.sources[seen]
+        z = (self.observations.upper - f)[~seen]
+        if omega == 0:
+            below = self._log_below(z, variance[~seen]).sum() if len(z) else 0.0
+            return -float(self._log_density(r, v).sum() + below)
+        if self.robust:
+            return -sum(self._by_quadrature(s, r, v, z, variance[~seen], omega) for s in range(self._n_sources))
+        result = -float(self._log_density(r, v).sum())
+        W = np.bincount(source, 1 / v, self._n_sources)
+        S = np.bincount(source, r / v, self._n_sources)
+        shrink = omega**2 / (1 + omega**2 * W)
+        result += float(np.sum(0.5 * np.log1p(omega**2 * W) - 0.5 * shrink * S**2))
+        if not len(z):
+            return result
+        limited, v_z = self.sources[~seen], variance[~seen]
+        alone = np.bincount(limited, minlength=self._n_sources)[limited] == 1
+        # One limit in its source: the average of Phi over a normal offset is Phi again.
+        s = limited[alone]
+        result -= float(log_ndtr((z[alone] - shrink[s] * S[s]) / np.sqrt(v_z[alone] + shrink[s])).sum())
+        for s in dict.fromkeys(limited[~alone]):
+            here = limited == s
+            offset = shrink[s] * S[s] + np.sqrt(shrink[s]) * _NODES[:, None]
+            below = log_ndtr((z[here] - offset) / np.sqrt(v_z[here])).sum(axis=1)
+            result -= _log_sum_exp(below - 0.5 * _NODES**2) - _LOG_WEIGHT
+        return result
+
+    def moments(self, values: NDArray) -> tuple[NDArray, NDArray, float]:
+        """F and the variance of each impact without the offset, and the standard deviation of the offsets."""
+        given = self._by_impact(values)
+        o = self.observations
+        e_dry, tau, omega = given.pop("e_dry"), given.pop(SCATTER, 0.0), given.pop(OFFSET, 0.0)
+        f, slope = self.model(self._St, e_dry, given)
+        variance = residual_variance(slope, o.e_sigma, self._St_sigma, o.correlation) + tau**2
+        return f, np.maximum(variance, _LEAST_VARIANCE), float(omega)
+
+    def offsets(self, values: NDArray) -> dict[str, tuple[float, float]]:
+        """Offset of each source, as far as the data tell: conditional mean and standard deviation."""
+        f, variance, omega = self.moments(np.asarray(values, float))
+        seen, result = self._seen, {}
+        for s, name in enumerate(self.source_names):
+            here = seen & (self.sources == s)
+            shrink = omega**2 / (1 + omega**2 * np.sum(1 / variance[here]))
+            mean = shrink * np.sum((self.observations.e - f)[here] / variance[here])
+            result[name] = float(mean), float(np.sqrt(shrink))
+        return result
+
+    def jacobian(self, values: NDArray) -> NDArray:
+        """D f_i / d parameter by central differences, shape (n, parameters); zero for standard deviations."""
+        values = np.asarray(values, float)
+        J = np.zeros((len(self.observations), len(values)))
+        for j, p in enumerate(self.parameters):
+            if not p.mean:
+                continue
+            step = 1e-6 * max(abs(values[j]), 1e-3 * min(1.0, p.bounds[1] - p.bounds[0]))
+            above, below = values.copy(), values.copy()
+            above[j], below[j] = min(values[j] + step, p.bounds[1]), max(values[j] - step, p.bounds[0])
+            J[:, j] = (self.moments(above)[0] - self.moments(below)[0]) / (above[j] - below[j])
+        return J
+
+    def of(self, observations: Observations) -> Likelihood:
+        """The same law and parameters for other observations, whose levels must be known here."""
+        fixed = dict(self.fixed)
+        if np.ndim(fixed.get("e_dry", 0.0)):
+            fixed["e_dry"] = observations.e_dry
+        return replace(self, observations=observations, fixed=fixed)
+
+    @cached_property
+    def source_names(self) -> list[str]:
+        return self.observations.groups("source")[0]
+
+    @cached_property
+    def sources(self) -> NDArray:
+        return self.observations.groups("source")[1]
+
+    @property
+    def _n_sources(self) -> int:
+        return len(self.source_names)
+
+    @cached_property
+    def _seen(self) -> NDArray:
+        return ~self.observations.censored
+
+    @cached_property
+    def _St(self) -> NDArray:
+        return self.observations.St * self.observations.ratio_to(self.model.convention)
+
+    @cached_property
+    def _St_sigma(self) -> NDArray:
+        return self.observations.St_sigma * self.observations.ratio_to(self.model.convention)
+
+    @cached_property
+    def _places(self) -> list[tuple[str, int | NDArray]]:
+        """For each quantity, where its value stands: an index, or one index an impact if it is separate."""
+        position = {p.name: j for j, p in enumerate(self.parameters)}
+        shared = [(name, j) for name, j in position.items() if "[" not in name]
+        parted = []
+        for name, label in self.separate.items():
+            levels, group = self.observations.groups(label)
+            parted.append((name, np.array([position[f"{name}[{level}]"] for level in levels])[group]))
+        return shared + parted
+
+    def _by_impact(self, values: NDArray) -> dict[str, float | NDArray]:
+        return dict(self.fixed) | {name: values[place] for name, place in self._places}
+
+    def _log_density(self, r: NDArray, variance: NDArray) -> NDArray:
+        if self.robust:
+            tail = -0.5 * (STUDENT + 1) * np.log1p(r**2 / (STUDENT * variance))
+            return _LOG_T + tail - 0.5 * np.log(variance)
+        scale = np.log(2 * np.pi * variance) if self.log_variance else 0.0
+        return -0.5 * (r**2 / variance + scale)
+
+    def _log_below(self, distance: NDArray, variance: NDArray) -> NDArray:
+        z = distance / np.sqrt(variance)
+        return np.log(stdtr(STUDENT, z)) if self.robust else log_ndtr(z)
+
+    def _by_quadrature(
+        self, s: int, r: NDArray, v: NDArray, z: NDArray, v_censored: NDArray, omega: float
+    ) -> float:
+        """Ln of the integral over the offset of one source, nodes placed where the normal one would have it."""
+        seen, censored = self.sources[self._seen] == s, self.sources[~self._seen] == s
+        r, v, z, v_censored = r[seen], v[seen], z[censored], v_censored[censored]
+        # Between the fold of a t likelihood's scale and that of the prior, the wider grid serves both.
+        spread = omega / np.sqrt(1 + omega**2 * np.sum(1 / v) / 2)
+        centre = np.median(r) * omega**2 / (omega**2 + (np.median(v) / len(v))) if len(r) else 0.0
+        b = centre + spread * _NODES[:, None]
+        log_p = self._log_density(r - b, v).sum(axis=1) + self._log_below(z - b, v_censored).sum(axis=1)
+        log_p += -0.5 * (b[:, 0] / omega) ** 2 - np.log(omega * np.sqrt(2 * np.pi))
+        return _log_sum_exp(log_p) + float(np.log(spread * (_NODES[1] - _NODES[0])))
+
+
+def _log_sum_exp(x: NDArray) -> float:
+    """ln sum exp x; scipy's takes any array library and ten times as long for these few nodes."""
+    most = x.max()
+    return float(most + np.log(np.exp(x - most).sum())) if np.isfinite(most) else float(most)
+
+
+_LOG_WEIGHT = _log_sum_exp(-0.5 * _NODES**2)

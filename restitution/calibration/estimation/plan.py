@@ -1,0 +1,139 @@
+"""What is estimated: which parameters of a law are free, e_dry, scatter and offsets, as a likelihood."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.calibration.estimation.identifiability import check_data
+from restitution.calibration.estimation.likelihood import OFFSET, SCATTER, Likelihood
+from restitution.calibration.estimation.parameters import Flat, HalfNormal, Normal, Parameter
+from restitution.calibration.estimation.rebound_model import ReboundModel
+from restitution.calibration.reading.observations import Observations
+from restitution.errors import Defect, InputError
+
+TYPICAL_DEVIATION = 0.1
+"""Width of the half-normal priors of scatter and offset in the posterior; e_eff itself lies between 0 and 1."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to estimate. Parameters of the law are free unless fixed, but for those that are a choice.
+
+    ``e_dry`` is ``None`` (as the data state it), ``"free"``, a number, or a :class:`Normal`. ``separate`` maps a
+    parameter to the label it is separate by. ``offsets`` None: if there is more than one source.
+    """
+
+    model: ReboundModel
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    free: frozenset[str] = frozenset()
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    priors: Mapping[str, Normal] = field(default_factory=dict)
+    e_dry: str | float | Normal | None = None
+    separate: Mapping[str, str] = field(default_factory=dict)
+    scatter: bool = True
+    offsets: bool | None = None
+    robust: bool = False
+
+    def likelihood(self, observations: Observations) -> Likelihood:
+        """The likelihood of the observations under this plan; refuses what cannot be fitted."""
+        self._known_names()
+        fixed: dict[str, float | NDArray] = {}
+        parameters: list[Parameter] = []
+        separate = dict(self.separate)
+        for p in self.model.parameters:
+            wanted = p.name in self.free or p.name in self.separate or p.name in self.priors
+            if p.name in self.fixed or (p.name in self.model.chosen and not wanted):
+                fixed[p.name] = self.fixed.get(p.name, p.start)
+            else:
+                parameters += _by_level(self._own(p), separate.get(p.name), observations)
+        e_dry, value = self._e_dry(observations, separate)
+        if e_dry is None:
+            fixed["e_dry"] = value
+        else:
+            parameters += _by_level(
+                self._own(e_dry), separate.get("e_dry"), observations, observations.e_dry_sigma
+            )
+        sources = len(observations.groups("source")[0])
+        deviation = HalfNormal(TYPICAL_DEVIATION)
+        if self.scatter:
+            parameters.append(Parameter(SCATTER, 0.03, (0.0, 1.0), "1", "even", deviation, False))
+        if self.offsets if self.offsets is not None else sources > 1:
+            parameters.append(Parameter(OFFSET, 0.03, (0.0, 1.0), "1", "even", deviation, False))
+        found = Likelihood(self.model, observations, tuple(parameters), fixed, separate, self.robust)
+        check_data(found)
+        return found
+
+    def _known_names(self) -> None:
+        names = [p.name for p in self.model.parameters]
+        for given in (*self.fixed, *self.free, *self.bounds, *self.priors, *self.separate):
+            if given not in (*names, "e_dry"):
+                rule = f"is not a parameter of {self.model.name}; it has: {', '.join([*names, 'e_dry'])}"
+                raise InputError(Defect(rule, field=given))
+
+    def _own(self, p: Parameter) -> Parameter:
+        """A parameter with the caller's bounds and prior."""
+        bounds = self.bounds.get(p.name, p.bounds)
+        prior = self.priors.get(p.name, p.prior)
+        start = prior.mean if isinstance(prior, Normal) else p.start
+        if not bounds[0] <= start <= bounds[1]:
+            start = 0.5 * (bounds[0] + bounds[1])
+        return replace(
+            p, bounds=bounds, prior=prior if p.scale != "log" or prior != Flat() else Flat(True), start=start
+        )
+
+    def _e_dry(self, o: Observations, separate: dict[str, str]) -> tuple[Parameter | None, float | NDArray | None]:
+        """The parameter e_dry, or its fixed value; finds what it is separate by where priors differ."""
+        given = self.fixed.get("e_dry", self.priors.get("e_dry", self.e_dry))
+        stated = np.isfinite(o.e_dry)
+        unknown = Parameter("e_dry", 0.95, (0.01, 1.0))
+        if given == "free" or (given is None and "e_dry" in self.free):
+            start = float(np.median(o.e_dry[stated])) if stated.any() else 0.95
+            return replace(unknown, start=start), None
+        if isinstance(given, Normal):
+            return replace(unknown, start=min(given.mean, 1.0), prior=given), None
+        if given is not None:
+            if not 0 < float(given) <= 1:
+                raise InputError(Defect("must lie above 0 and be at most 1", field="e_dry", value=f"{given:g}"))
+            return None, float(given)
+        if not stated.all():
+            where = o.places[int(np.argmin(stated))] if o.places else (None, None)
+            rule = "is not stated: fill the column e_dry, or give --e-dry VALUE, VALUE+-SIGMA or free"
+            raise InputError(Defect(rule, *where, "e_dry"))
+        uncertain = np.isfinite(o.e_dry_sigma)
+        if not uncertain.any():
+            return None, o.e_dry
+        if not uncertain.all():
+            where = o.places[int(np.argmin(uncertain))] if o.places else (None, None)
+            raise InputError(
+                Defect("is empty here and given in other rows: give it in all", *where, "e_dry_sigma")
+            )
+        levels = np.unique(np.stack([o.e_dry, o.e_dry_sigma], axis=1), axis=0)
+        if len(levels) == 1:
+            return replace(unknown, start=levels[0, 0], prior=Normal(*map(float, levels[0]))), None
+        separate.setdefault("e_dry", "material" if "material" in o.labels else "source")
+        return unknown, None
+
+
+def _by_level(
+    p: Parameter, label: str | None, o: Observations, e_dry_sigma: NDArray | None = None
+) -> list[Parameter]:
+    """One parameter, or one for each level of a label; e_dry then takes the prior that its level states."""
+    if label is None:
+        return [p]
+    levels, group = o.groups(label)
+    found = []
+    for i, level in enumerate(levels):
+        own = replace(p, name=f"{p.name}[{level}]")
+        if e_dry_sigma is not None and isinstance(p.prior, Flat):
+            stated = {(m, s) for m, s in zip(o.e_dry[group == i], e_dry_sigma[group == i], strict=True) if s == s}
+            if len(stated) > 1:
+                rule = f"has more than one value where {label} is {level!r}: it must be one a {label}"
+                raise InputError(Defect(rule, field="e_dry"))
+            if stated:
+                own = replace(own, start=min(stated)[0], prior=Normal(*map(float, min(stated))))
+        found.append(own)
+    return found

@@ -1,0 +1,6 @@
+"""From files to observations.
+
+Read :mod:`.observations` (what is known of impacts), :mod:`.impact_table` and :mod:`.impact_checks` (a table of
+impacts), :mod:`.track_impacts` (a track), :mod:`.digitizer` (a digitised plot), :mod:`.impact_data` (any of them);
+:mod:`.template` is the file to fill in.
+"""

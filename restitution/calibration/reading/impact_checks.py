@@ -1,0 +1,132 @@
+"""What can be wrong with a table of impacts beyond its form: all of it, to be named at once.
+
+The form of the table (columns, types, ranges) is the affair of its schema, ``measurement.json``; here stand the
+rules between columns: one definition of St and of the impact speed in a file, St and e_eff given or derived from
+speeds, errors positive, e_eff physical.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from restitution.calibration.reading.observations import Observations
+from restitution.calibration.reading.reading import Reading
+from restitution.errors import Defect, InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CONDITIONS = ("fluid_density_kg_m3", "fluid_viscosity_Pa_s", "sphere_diameter_m", "sphere_density_kg_m3")
+NO_SPEED = (
+    "which impact speed e_eff and St were made with is not stated: --speed far (outside the film), "
+    "contact, window, film_edge or unstated, or the column speed_definition"
+)
+_NO_STOKES = (
+    "which Stokes number this is, is not stated: --stokes st (rho_p v d/(9 mu)), st_star, st_d, st_18 or "
+    "st_b, or the column stokes_convention"
+)
+_UNPHYSICAL = (
+    "lies outside 0 to 1: a rebound faster than the impact, or towards the wall; if errors of measurement "
+    "explain it, --allow-unphysical fits it as it is (dropping it would bias the fit)"
+)
+_SIGMAS = ("e_eff_sigma", "stokes_sigma", "e_dry_sigma", "impact_speed_sigma_m_s", "rebound_speed_sigma_m_s")
+
+
+class TableCheck:
+    """The rules on one table; ``defects`` gathers what breaks them, no cell twice.
+
+    ``rows`` are the lines of the file; ``found`` defects of the table's form, the cells they name being empty.
+    """
+
+    def __init__(self, table: pd.DataFrame, how: Reading, file: str, rows: Sequence[int], found: Iterable[Defect]):
+        self.table, self.how, self.file, self.rows = table, how, file, rows
+        self.defects = list(found)
+        self._named = {(d.row, d.field) for d in self.defects}
+        # Where a column is misnamed, its empty cells are no further defects.
+        self._complete = not any(d.row == 1 for d in self.defects)
+
+    def _add(self, rule: str, i: int | None, name: str | None, value: str | None = None) -> None:
+        row = None if i is None else int(self.rows[i])
+        own = None if name is None else self.how.columns.get(name, name)
+        if row is None or (row, own) not in self._named:
+            self._named.add((row, own))
+            self.defects.append(Defect(rule, self.file, row, own, value))
+
+    def _add_all(self, rule: str, where: np.ndarray, name: str, values: Any = None) -> None:
+        for i in np.flatnonzero(where):
+            self._add(rule, i, name, None if values is None else f"{values[i]:g}")
+
+    def definition(self, column: str, given: str | None, option: str) -> str | None:
+        """The one value of a column that states a definition, or the caller's; None where nobody states it."""
+        stated = self.table[column].dropna()
+        if stated.empty:
+            return given
+        first, at = stated.iloc[0], stated.index[0]
+        if given is not None and given != first:
+            rule = f"the file states another: {first!r}"
+            self.defects.append(Defect(rule, self.file, int(self.rows[at]), option, str(given)))
+        for i, value in stated.items():
+            if value != first:
+                rule = f"differs from {first!r} in row {self.rows[at]}: one file has one definition; split it"
+                self._add(rule, i, column, value)
+        empty = self.table[column].isna().to_numpy(bool)
+        self._add_all(f"is empty here and {first!r} in other rows: give it in all", empty, column)
+        return first
+
+    def speed(self) -> str | None:
+        """The definition of the impact speed; that nobody states it is a defect."""
+        speed = self.definition("speed_definition", self.how.speed, "--speed")
+        if speed is None:
+            self._add(NO_SPEED, None, None)
+        return speed
+
+    def stokes(self, conditions: Sequence) -> str:
+        """The Stokes convention; St must be given under it, or follow from the impact speed and conditions."""
+        key = self.definition("stokes_convention", self.how.stokes, "--stokes")
+        given = self.table["stokes"].notna().to_numpy(bool)
+        if given.any() and key is None:
+            self._add(_NO_STOKES, int(np.argmax(given)), "stokes")
+        speed = self.table["impact_speed_m_s"].to_numpy(float)
+        if self._complete:
+            rule = "is not given, nor the impact_speed_m_s and conditions that it would follow from"
+            self._add_all(rule, ~given & np.isnan(speed), "stokes")
+            without = np.array([c is None for c in conditions], bool)
+            rule = (
+                f"needs fluid and sphere to become a Stokes number: {', '.join(CONDITIONS)}, or --conditions FILE"
+            )
+            self._add_all(rule, ~given & np.isfinite(speed) & without, "impact_speed_m_s", speed)
+        return key or "st"
+
+    def errors(self) -> None:
+        """Standard errors are positive."""
+        for name in _SIGMAS:
+            values = self.table[name].to_numpy(float)
+            rule = "must be positive; leave the cell empty where it is not known"
+            self._add_all(rule, (values <= 0) | np.isinf(values), name, values)
+
+    def restitution(self, e: np.ndarray, none: np.ndarray) -> None:
+        """Each impact has an e_eff, or an outcome without one; its value is physical unless that is waived."""
+        if self._complete:
+            rule = "is empty: give it, or both speeds, or an outcome of no_rebound (a limit, not a zero)"
+            self._add_all(rule, np.isnan(e) & ~none, "e_eff")
+        seen = self.table["e_eff"].to_numpy(float)
+        rule = "is given for an impact without a rebound: leave it empty and give the limit as e_eff_upper"
+        self._add_all(rule, none & np.isfinite(seen) & (seen != 0), "e_eff", seen)
+        if not self.how.unphysical:
+            self._add_all(_UNPHYSICAL, _outside(e) & ~none, "e_eff", e)
+
+
+def check_physical(o: Observations, how: Reading) -> Observations:
+    """The same impacts of one's own tracks; refuses those whose e_eff is not physical, unless that is waived."""
+    outside = np.flatnonzero(_outside(o.e)) if not how.unphysical else ()
+    defects = [Defect(_UNPHYSICAL, *o.places[i], "e_eff", f"{o.e[i]:g}") for i in outside]
+    if defects:
+        raise InputError(*defects)
+    return o
+
+
+def _outside(e: np.ndarray) -> np.ndarray:
+    return (e < 0) | (e > 1)

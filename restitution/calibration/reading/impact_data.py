@@ -1,0 +1,92 @@
+"""Reading what is fitted: tables of impacts, camera tracks, digitised plots and shipped records, in any number.
+
+A table of impacts has the columns of ``measurement.json`` or others mapped to them (:mod:`.impact_table`); a
+track has ``time_s`` and ``gap_m`` or ``velocity_m_s`` (:mod:`.track_impacts`). Which Stokes number and which
+impact speed is meant is stated by columns or by the caller, never assumed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from restitution import datasets
+from restitution.calibration.reading.digitizer import PIXEL, is_export, read_export
+from restitution.calibration.reading.impact_table import SCHEMA, from_table
+from restitution.calibration.reading.observations import Observations, join
+from restitution.calibration.reading.reading import Reading
+from restitution.calibration.reading.track_impacts import from_track, from_track_file, is_track
+from restitution.errors import Defect, InputError
+from restitution.tables.reading import examine_table, read_header
+from restitution.tables.schema import read_schema
+
+
+def read(paths: str | Path | Sequence[str | Path], how: Reading | None = None, **stated: Any) -> Observations:
+    """The impacts of all files, or of shipped records; raises :class:`InputError` with what is wrong and where.
+
+    ``how`` the files are read may also be ``stated`` by single fields of a :class:`~.reading.Reading`, as in
+    ``read("my.csv", stokes="st", speed="far")``.
+    """
+    how = replace(how or Reading(), **stated)
+    paths = [paths] if isinstance(paths, str | Path) else paths
+    parts: list[Observations] = []
+    defects: list[Defect] = []
+    for path in map(str, paths):
+        try:
+            parts.append(_read_one(path, how))
+        except InputError as error:
+            defects += error.defects
+    seen: dict[str, str] = {}
+    for part in parts:
+        for name, digest in part.files.items():
+            if digest in seen:
+                defects.append(
+                    Defect(f"has the same content as {seen[digest]}: its impacts would count twice", name)
+                )
+            seen[digest] = name
+    if defects:
+        raise InputError(*dict.fromkeys(defects))
+    return join(parts)
+
+
+def _read_one(path: str, how: Reading) -> Observations:
+    if not Path(path).exists():
+        if path in datasets.names():
+            resource = datasets.resource(path)
+            digest = resource.hash.removeprefix("sha256:")
+            conditions = how.conditions or resource.conditions
+            return from_track(datasets.load_track(path), conditions, how, path, digest)
+        raise InputError(Defect("does not exist, and no shipped record has this name", path))
+    if is_export(path):
+        return _from_export(path, how, _digest(path))
+    if is_track(read_header(path), how):
+        return from_track_file(path, how, _digest(path))
+    _known_columns(dict.fromkeys(how.columns, "--column"))
+    defects, table = examine_table(path, read_schema(SCHEMA), how.columns)
+    return from_table(table, how, path, _digest(path), defects)
+
+
+def _from_export(path: str, how: Reading, digest: str) -> Observations:
+    """The points of a digitised plot, each data set a source."""
+    _known_columns(dict(zip(how.axes, ("--x", "--y"), strict=True)))
+    found = from_table(read_export(path, how.axes), replace(how, columns={}), path, digest)
+    if not path.endswith(".json"):
+        return found
+    note = f"{path}: errors are those of a click, {PIXEL:g} pixel; those of the measurement are in the scatter"
+    return replace(found, notes=(*found.notes, note))
+
+
+def _known_columns(given: Mapping[str, str]) -> None:
+    """Refuse names that are no columns of the schema, each given by the option that is its value."""
+    known = read_schema(SCHEMA).columns
+    rule = f"is not a column that a fit uses; known: {', '.join(known)}"
+    defects = [Defect(rule, None, None, option, name) for name, option in given.items() if name not in known]
+    if defects:
+        raise InputError(*defects)
+
+
+def _digest(path: str) -> str:
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()

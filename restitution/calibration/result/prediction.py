@@ -1,0 +1,217 @@
+"""e_eff at given conditions, with its interval: that of the law, and that of one more impact.
+
+Linear propagation of the covariance of the parameters, J C J^T, with Student's t of the least degrees of freedom
+of them. One more impact, by another particle in another set-up, has scatter and source offset on top, each with
+its own t: a standard deviation tau known to sigma_tau has tau^2/(2 sigma_tau^2) degrees of freedom; half-widths
+add in squares, which is exact for normal errors. Where the fit has a posterior, its draws take the place of all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.calibration.estimation.likelihood import OFFSET, SCATTER
+from restitution.calibration.estimation.maximum import LEVELS
+from restitution.calibration.result.fit_result import FitResult, parameter_values
+from restitution.calibration.showing import Showing, Table
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.stokes import Speed, StokesNumber
+
+
+@dataclass(frozen=True, repr=False)
+class Prediction(Showing):
+    """Arrays over the Stokes numbers; ``law`` and ``impact`` are intervals (n, 2) by level in percent."""
+
+    stokes: NDArray
+    value: NDArray
+    sigma: NDArray
+    law: Mapping[str, NDArray]
+    impact: Mapping[str, NDArray]
+    warnings: tuple[str, ...]
+
+    def shown(self) -> Table:
+        """e_eff at each Stokes number, where the law lies, and where one more impact would."""
+        intervals = {f"law, {level}": ends for level, ends in self.law.items()}
+        intervals |= {f"one impact, {level}": ends for level, ends in self.impact.items()}
+        rows = [
+            (
+                f"{St:.4g}",
+                f"{value:.3f}",
+                *(f"{ends[i][0]:.3f} to {ends[i][1]:.3f}" for ends in intervals.values()),
+            )
+            for i, (St, value) in enumerate(zip(self.stokes, self.value, strict=True))
+        ]
+        title = "\n".join(["e_eff by the fitted law", *(f"warning: {text}" for text in self.warnings)])
+        return Table(title, ("St", "e_eff", *intervals), rows)
+
+
+def predict(
+    result: FitResult,
+    St: NDArray | Sequence[float] | float,
+    e_dry: float | None = None,
+    conditions: Conditions | None = None,
+    levels: Mapping[str, str] | None = None,
+    seed: int = 0,
+) -> Prediction:
+    """The fitted law at ``St``, in the convention and speed of the data it was fitted to.
+
+    ``e_dry`` where it was not estimated (else taken from ``conditions``); ``levels`` name the level of separate
+    parameters, as ``{"material": "steel"}``.
+    """
+    law = Evaluation(result, e_dry, conditions, levels)
+    St = np.atleast_1d(np.asarray(St, float))
+    value = law(St, law.values)
+    J = law.jacobian(St)
+    sigma = np.sqrt(np.einsum("ij,jk,ik->i", J, law.covariance, J))
+    if result.posterior is not None:
+        intervals, more = _from_draws(law, St, result, seed)
+    else:
+        half = {x: sigma * quantile(x, law.freedom) for x in LEVELS}
+        noise = {x: np.hypot(*(_half_width(result, name, x) for name in (SCATTER, OFFSET))) for x in LEVELS}
+        intervals = {f"{x:.0%}": _around(value, half[x]) for x in LEVELS}
+        more = {f"{x:.0%}": _around(value, np.hypot(half[x], noise[x])) for x in LEVELS}
+    return Prediction(St, value, sigma, intervals, more, _warnings(result, St, law.e_dry))
+
+
+def stokes_of(result: FitResult, speed: NDArray, conditions: Conditions) -> NDArray:
+    """St in the convention of the fit's data, of impact speeds in m/s by the fit's definition of speed."""
+    number = StokesNumber.from_speed(speed, conditions, result.stokes_convention, Speed(result.speed_definition))
+    return np.atleast_1d(number.value)
+
+
+class Evaluation:
+    """A fitted law that can be evaluated at other values of its parameters: what prediction and design share."""
+
+    def __init__(
+        self,
+        result: FitResult,
+        e_dry: float | None = None,
+        conditions: Conditions | None = None,
+        levels: Mapping[str, str] | None = None,
+    ):
+        self.model = result.model()
+        chosen = parameter_values(result, levels)
+        missing = [p.name for p in self.model.parameters if p.name not in chosen]
+        if "e_dry" in result.separate and "e_dry" not in chosen:
+            missing.append("e_dry")
+        if missing:
+            label = result.separate[missing[0]]
+            known = [p.name.partition("[")[2].removesuffix("]") for p in result.parameters if "[" in p.name]
+            rule = f"differs by {label}: --level {label}=NAME, one of {', '.join(dict.fromkeys(known))}"
+            raise InputError(Defect(rule, field=missing[0]))
+        if e_dry is None and "e_dry" not in chosen and conditions is not None:
+            e_dry = conditions.sphere.e_dry
+        if "e_dry" not in chosen and e_dry is None:
+            raise InputError(
+                Defect("is needed: it was not estimated (--e-dry 0.97, or --sphere ...,e_dry=0.97)", field="e_dry")
+            )
+        if e_dry is not None and not 0 < e_dry <= 1:
+            raise InputError(Defect("must lie above 0 and be at most 1", field="e_dry", value=f"{e_dry:g}"))
+        self.e_dry = chosen.get("e_dry", e_dry)
+        self.fixed = {"e_dry": self.e_dry} | chosen
+        plain = {p.name: p.name.partition("[")[0] for p in result.parameters if p.mean}
+        used = [p for p in result.parameters if p.mean and chosen.get(plain[p.name]) == p.value]
+        self.names = [plain[p.name] for p in used]
+        self.full_names = [p.name for p in used]
+        self.bounds = [p.bounds for p in used]
+        self.values = np.array([p.value for p in used])
+        index = [[q.name for q in result.parameters].index(p.name) for p in used]
+        whole = np.array([[np.nan if x is None else x for x in row] for row in result.covariance])
+        self.covariance = whole[np.ix_(index, index)] if index else np.zeros((0, 0))
+        self.freedom = min((p.degrees_of_freedom or np.inf for p in used), default=np.inf)
+        self.ratio = _ratio(result, self.model.convention, conditions)
+
+    def __call__(self, St: NDArray, values: NDArray) -> NDArray:
+        """F at St of the data's convention."""
+        given = self.fixed | dict(zip(self.names, map(float, values), strict=True))
+        e_dry = given.pop("e_dry")
+        given = {p.name: given[p.name] for p in self.model.parameters}
+        return self.model(St * self.ratio, e_dry, given)[0]
+
+    def slope(self, St: NDArray) -> NDArray:
+        """Df/dSt in the data's St."""
+        given = dict(self.fixed)
+        e_dry = given.pop("e_dry")
+        given = {p.name: given[p.name] for p in self.model.parameters}
+        return self.model(St * self.ratio, e_dry, given)[1] * self.ratio
+
+    def jacobian(self, St: NDArray) -> NDArray:
+        """Df/d parameter by central differences, (n, parameters)."""
+        J = np.zeros((len(St), len(self.names)))
+        for j, (low, high) in enumerate(self.bounds):
+            step = 1e-6 * max(abs(self.values[j]), 1e-3 * min(1.0, high - low))
+            above, below = self.values.copy(), self.values.copy()
+            above[j], below[j] = min(above[j] + step, high), max(below[j] - step, low)
+            J[:, j] = (self(St, above) - self(St, below)) / (above[j] - below[j])
+        return J
+
+
+def quantile(level: float, freedom: float) -> float:
+    """Half the width of a central interval of Student's t, or of the normal, in standard errors."""
+    from scipy.stats import norm, t
+
+    half = 0.5 * (1 + level)
+    return float(norm.ppf(half) if np.isinf(freedom) else t.ppf(half, freedom))
+
+
+def _half_width(result: FitResult, name: str, level: float) -> float:
+    """Of the scatter or the source offset of one more impact; 0 where it was not estimated, or is 0."""
+    found = next((p for p in result.parameters if p.name == name), None)
+    if found is None or not found.value > 0:
+        return 0.0
+    freedom = 1.0 if found.sigma is None else max(0.5 * (found.value / found.sigma) ** 2, 1.0)
+    return found.value * quantile(level, freedom)
+
+
+def _ratio(result: FitResult, convention: str, conditions: Conditions | None) -> float:
+    """The law's Stokes number over that of the data: by the conditions, or as it was for all fitted impacts."""
+    low, high = result.law_stokes_ratio
+    if conditions is None and high - low < 1e-9 * high:
+        return low
+    return StokesNumber(1.0, result.stokes_convention).to(convention, conditions).value
+
+
+def _around(value: NDArray, half: NDArray) -> NDArray:
+    return np.stack([value - half, value + half], axis=1)
+
+
+def _from_draws(
+    law: Evaluation, St: NDArray, result: FitResult, seed: int
+) -> tuple[dict[str, NDArray], dict[str, NDArray]]:
+    """Central intervals of the law and of one more impact over the draws of the posterior."""
+    chain, rng = result.posterior, np.random.default_rng(seed)
+    draws = np.array(chain.draws)
+    where = [chain.names.index(name) for name in law.full_names]
+    f = np.stack([law(St, row[where]) for row in draws])
+    noise = np.zeros(len(draws))
+    for name in (SCATTER, OFFSET):
+        if name in chain.names:
+            noise = np.hypot(noise, draws[:, chain.names.index(name)])
+    more = f + (noise * rng.standard_normal(len(draws)))[:, None]  # one impact a draw, moved along St
+
+    def central(x: NDArray, level: float) -> NDArray:
+        return np.quantile(x, [0.5 * (1 - level), 0.5 * (1 + level)], axis=0).T
+
+    return {f"{x:.0%}": central(f, x) for x in LEVELS}, {f"{x:.0%}": central(more, x) for x in LEVELS}
+
+
+def _warnings(result: FitResult, St: NDArray, e_dry: float) -> tuple[str, ...]:
+    found = []
+    low, high = result.stokes_range
+    outside = St[(St < low) | (St > high)]
+    if len(outside):
+        shown = f"{outside.min():.4g}" + (f" to {outside.max():.4g}" if len(outside) > 1 else "")
+        found.append(
+            f"St {shown} lies outside the calibrated range {low:.4g} to {high:.4g}: the interval does not say how "
+            "wrong the law may be there"
+        )
+    least, most = result.e_dry_range
+    estimated = any(p.name.startswith("e_dry") for p in result.parameters)
+    if not estimated and not least - 0.02 <= e_dry <= most + 0.02:
+        found.append(f"e_dry {e_dry:g} lies outside that of the calibration, {least:g} to {most:g}")
+    return tuple(found)

@@ -1,0 +1,234 @@
+"""Which law do the data support: information criteria, predictive scores by refitting, a predictive check.
+
+- AIC and BIC from the maximum of the true likelihood, scatter and offsets counted as parameters;
+- leave-one-out and leave-one-source-out: every impact, or every source, is predicted by a fit to the others, and
+  its log predictive density summed (elpd). The density is normal with the errors, scatter and offset of the impact
+  and the covariance of the parameters; an impact without a rebound has the probability of its limit;
+- a posterior-predictive check: the sum of products of neighbouring pulls in the order of St, against data drawn
+  from the fitted law. Estimated scatter makes every law fit in the mean; a wrong shape leaves neighbours alike.
+
+Two laws are called separated where their elpd differ by more than 4 and by more than twice the standard error of
+the difference (Sivula, Magnusson & Vehtari, arXiv:2008.10296), by single impacts, and by sources wherever there
+are three or more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import log_ndtr
+
+from restitution.calibration.estimation.fitting import Fit, estimate
+from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
+from restitution.calibration.estimation.plan import Plan
+from restitution.calibration.reading.observations import Observations
+from restitution.calibration.showing import Showing, Table, counted
+from restitution.errors import ConventionError, InputError
+
+LEAST_DIFFERENCE, STANDARD_ERRORS = 4.0, 2.0
+REPLICATES = 1000
+
+
+@dataclass(frozen=True)
+class Score:
+    """One law's scores; ``loo`` has one elpd an impact, ``loso`` one a source (empty with a single source)."""
+
+    label: str
+    fit: Fit
+    parameters: int
+    log_likelihood: float
+    aic: float
+    bic: float
+    loo: NDArray
+    loso: NDArray
+    check: float
+    """P-value of the predictive check: small where neighbours in St deviate alike."""
+
+    @property
+    def elpd_loo(self) -> float:
+        return float(self.loo.sum())
+
+    @property
+    def elpd_loso(self) -> float | None:
+        return float(self.loso.sum()) if len(self.loso) else None
+
+
+@dataclass(frozen=True)
+class Row:
+    """A law in its place: how far its elpd is behind the best law's, with the standard error of that."""
+
+    score: Score
+    best: bool
+    behind: float
+    behind_error: float
+    separated: bool
+    """Whether the data tell it from the best one."""
+
+    @property
+    def law(self) -> str:
+        """Its label."""
+        return self.score.label
+
+
+@dataclass(frozen=True, repr=False)
+class Ranking(Showing):
+    """Scores, best first by leave-one-out, and laws that could not be fitted with the reason."""
+
+    scores: tuple[Score, ...]
+    failed: dict[str, str] = field(default_factory=dict)
+
+    def difference(self, better: Score, worse: Score) -> tuple[float, float]:
+        """Difference of the leave-one-out elpd and its standard error."""
+        d = better.loo - worse.loo
+        return float(d.sum()), float(np.sqrt(len(d) * np.var(d, ddof=1))) if len(d) > 1 else np.inf
+
+    def separated(self, better: Score, worse: Score) -> bool:
+        """Whether the data tell the two laws apart."""
+        gap, error = self.difference(better, worse)
+        if gap < LEAST_DIFFERENCE or gap < STANDARD_ERRORS * error:
+            return False
+        return len(better.loso) < 3 or better.elpd_loso > worse.elpd_loso
+
+    def rows(self) -> list[Row]:
+        """Every law in its place, best first."""
+        best = self.scores[0]
+        return [
+            Row(s, s is best, *self.difference(best, s), s is not best and self.separated(best, s))
+            for s in self.scores
+        ]
+
+    def shown(self) -> Table:
+        """The laws, best first, and how far each is behind."""
+        rows = [
+            (row.law, f"{row.score.elpd_loo:.1f}",
+             "" if row.best else f"{row.behind:.1f} +- {row.behind_error:.1f}",
+             "yes" if row.separated else "", f"{row.score.aic:.1f}", f"{row.score.check:.2f}")
+            for row in self.rows()
+        ]  # fmt: skip
+        left_out = f"; left out: {', '.join(self.failed)}" if self.failed else ""
+        title = f"{counted(len(self.scores), 'law')} by predicting each impact from the others{left_out}"
+        return Table(title, ("law", "elpd", "behind the best", "separated", "AIC", "check p"), rows)
+
+    @property
+    def contenders(self) -> list[Score]:
+        """The best law and those that the data do not separate from it."""
+        return [row.score for row in self.rows() if not row.separated]
+
+
+def rank(
+    plans: Sequence[tuple[str, Plan]],
+    observations: Observations,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> Ranking:
+    """Fit and score every plan on the same impacts; a law that cannot be fitted is set aside with its reason."""
+    scores, failed = [], {}
+    for label, plan in plans:
+        if progress:
+            progress(label)
+        try:
+            scores.append(score(label, plan, observations, seed))
+        except ConventionError:
+            failed[label] = (
+                f"its Stokes number is {plan.model.convention}, that of the data {observations.convention}: fluid "
+                "and sphere are needed (their columns, or --conditions FILE)"
+            )
+        except InputError as error:
+            failed[label] = str(error.defects[0])
+    if not scores:
+        raise InputError(*(f"{label}: {reason}" for label, reason in failed.items()))
+    return Ranking(tuple(sorted(scores, key=lambda s: -s.elpd_loo)), failed)
+
+
+def score(label: str, plan: Plan, observations: Observations, seed: int = 0) -> Score:
+    """One law's scores."""
+    fit = estimate(plan, observations)
+    plain = estimate(plan, observations, False, False, fit.maximum, covariance=False)
+    k, n = len(fit.maximum.parameters), len(observations)
+    log_likelihood = -plain.maximum.negative_log
+    sources = fit.likelihood.sources
+    loo = np.array([_left_out(plan, fit, np.arange(n) == i) for i in range(n)])
+    levels = np.unique(sources)
+    loso = np.array([_left_out(plan, fit, sources == s) for s in levels]) if len(levels) > 1 else np.zeros(0)
+    aic, bic = 2 * k - 2 * log_likelihood, k * np.log(n) - 2 * log_likelihood
+    return Score(label, fit, k, log_likelihood, aic, bic, loo, loso, _neighbours(fit, seed))
+
+
+def _left_out(plan: Plan, whole: Fit, out: NDArray) -> float:
+    """Log predictive density of the impacts ``out`` by a fit to the others."""
+    rest = whole.likelihood.observations.take(~out)
+    # Whether sources are offset is a property of the model, not of what is left out.
+    names = [p.name for p in whole.maximum.parameters]
+    plan = replace(plan, offsets=OFFSET in names)
+    # A level of a separate parameter may be gone with what is left out.
+    near = whole.maximum if not plan.separate or len(plan.likelihood(rest).parameters) == len(names) else None
+    fit = estimate(plan, rest, intervals=False, near=near)
+    return predictive(fit, whole.likelihood, out)
+
+
+def predictive(fit: Fit, whole: Likelihood, out: NDArray) -> float:
+    """Log density of impacts that are not in ``fit``, given those of their sources that are.
+
+    Normal: mean f + the offset known from the source, covariance of errors, scatter, what is open of the offset,
+    and J C J^T of the parameters. Limits enter one by one, given the measured ones.
+    """
+    values, C = fit.maximum.values, fit.maximum.covariance
+    o = whole.observations
+    f, variance, omega = whole.moments(values)
+    J = whole.jacobian(values)
+    inside = ~out & ~o.censored
+    same = (whole.sources[:, None] == whole.sources).astype(float)
+    mean, cov = f.copy(), np.diag(variance) + omega**2 * same
+    if omega > 0 and inside.any():
+        gain = np.linalg.solve(cov[np.ix_(inside, inside)], (omega**2 * same)[np.ix_(inside, out)]).T
+        mean[out] += gain @ (o.e - f)[inside]
+        J_out = J[out] - gain @ J[inside]
+        cov_out = cov[np.ix_(out, out)] - gain @ (omega**2 * same)[np.ix_(inside, out)]
+    else:
+        J_out, cov_out = J[out], cov[np.ix_(out, out)]
+    cov_out = cov_out + J_out @ C @ J_out.T
+    mean, e, upper = mean[out], o.e[out], o.upper[out]
+    seen = ~np.isnan(e)
+    total = 0.0
+    if seen.any():
+        r, K = (e - mean)[seen], cov_out[np.ix_(seen, seen)]
+        total -= 0.5 * (r @ np.linalg.solve(K, r) + np.linalg.slogdet(2 * np.pi * K)[1])
+    for i in np.flatnonzero(~seen):
+        m, v = mean[i], cov_out[i, i]
+        if seen.any():
+            weight = np.linalg.solve(K, cov_out[seen, i])
+            m, v = m + weight @ r, v - weight @ cov_out[seen, i]
+        total += float(log_ndtr((upper[i] - m) / np.sqrt(max(v, 1e-24))))
+    return float(total)
+
+
+def _neighbours(fit: Fit, seed: int) -> float:
+    """Posterior-predictive p-value of the products of neighbouring pulls in the order of St.
+
+    Parameters are drawn from the normal approximation of their posterior; for each draw the statistic of the data
+    is set against that of data drawn from the law.
+    """
+    likelihood, o = fit.likelihood, fit.likelihood.observations
+    seen = np.flatnonzero(~o.censored)
+    order = seen[np.argsort(o.St[seen], kind="stable")]
+    if len(order) < 3:
+        return 1.0
+    values = fit.maximum.values
+    f, variance, omega = likelihood.moments(values)
+    sigma = np.sqrt(variance)[order]
+    rng = np.random.default_rng(seed)
+    mean = [j for j, p in enumerate(fit.maximum.parameters) if p.mean]
+    C = fit.maximum.covariance[np.ix_(mean, mean)]
+    away = rng.multivariate_normal(np.zeros(len(mean)), C, REPLICATES) if mean else np.zeros((REPLICATES, 0))
+    observed = ((o.e - f)[order] - away @ likelihood.jacobian(values)[order][:, mean].T) / sigma
+    sources = likelihood.sources[order]
+    offsets = omega * rng.standard_normal((REPLICATES, len(likelihood.source_names)))[:, sources] / sigma
+    drawn = rng.standard_normal((REPLICATES, len(order))) + offsets
+
+    def statistic(z: NDArray) -> NDArray:
+        return np.sum(z[:, 1:] * z[:, :-1], axis=1) / np.sum(z**2, axis=1)
+
+    return float((1 + np.sum(statistic(drawn) >= statistic(observed))) / (1 + REPLICATES))

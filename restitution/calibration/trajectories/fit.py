@@ -1,0 +1,165 @@
+"""A rebound law fitted to whole trajectories: records to impacts by the equation of motion, impacts to the law.
+
+The first step (:mod:`.whole_trajectories`) knows no law, so one pass over the records serves every law; the second
+is the fit of :mod:`.estimation.fitting`, scatter from impact to impact and an offset of each record included. With
+every fit stands what a slope-based one makes of the same records, and how far the model with the fitted law is
+from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from restitution.bounce import Closures, OwnWake
+from restitution.calibration.estimation.fitting import Fit, estimate
+from restitution.calibration.estimation.plan import Plan
+from restitution.calibration.reading.impact_checks import check_physical
+from restitution.calibration.reading.observations import Observations, join
+from restitution.calibration.reading.reading import Reading
+from restitution.calibration.reading.track_impacts import from_track
+from restitution.calibration.result.fit_result import FitResult, TrajectoryRecord, result_of
+from restitution.calibration.result.fitted_law import FittedLaw
+from restitution.calibration.trajectories.doubts import in_words
+from restitution.calibration.trajectories.recordings import Recording
+from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory, distance_d, whole_trajectories
+from restitution.errors import Defect, InputError
+from restitution.stokes import Speed
+
+CLEAR = 5.0
+"""Ln of the evidence by which records are said to prefer the model with or without wake; odds of 150."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Records turned into impacts, with the wake of the approach and without."""
+
+    records: tuple[Recording, ...]
+    found: dict[bool, list[WholeTrajectory]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, records: Sequence[Recording], wakes: Sequence[bool] = (False, True)) -> Measured:
+        """All records under each kind of model."""
+        return cls(tuple(records), {wake: whole_trajectories(records, wake) for wake in wakes})
+
+    def preference(self) -> float:
+        """Ln of the evidence with wake over that without, all records; 0 where one of them was not asked for."""
+        if len(self.found) < 2:
+            return 0.0
+        with_wake, without = (sum(t.log_evidence for t in self.found[w]) for w in (True, False))
+        return with_wake - without
+
+    @property
+    def preferred(self) -> bool:
+        """Whether the frames prefer the wake; of what was asked for."""
+        return self.preference() > 0 if len(self.found) == 2 else next(iter(self.found))
+
+
+def observations(found: Sequence[WholeTrajectory], how: Reading) -> Observations:
+    """The impacts of the records for a fit, each record a source."""
+    rows = [row for t in found for row in t.rows(how.stokes or "st")]
+    if not any(row["outcome"] == "rebound" for row in rows):
+        rule = "no bounce leaves the film, 0.1 d: nothing to fit a law to"
+        raise InputError(*(Defect(rule, t.recording.name) for t in found))
+    records = {t.recording.name: t.recording for t in found}
+    o = Observations.from_impacts(
+        rows,
+        [records[row["record"]].conditions for row in rows],
+        places=tuple((f"{row['record']}, impact", int(row["impact"])) for row in rows),
+        files={name: r.digest for name, r in records.items()},
+        notes=tuple(note for r in records.values() for note in r.notes),
+    )
+    return check_physical(o, how)
+
+
+def slope_observations(records: Sequence[Recording], how: Reading) -> Observations:
+    """The same records by the slopes beside each contact (:mod:`restitution.impacts`), ``far`` as well."""
+    how = replace(how, speed=Speed.FAR, stokes=how.stokes or "st")
+    return join([from_track(r.track, r.conditions, how, r.name, r.digest) for r in records])
+
+
+def law_fit(plan: Plan, o: Observations) -> Fit:
+    """The fit of a law; with as many impacts as parameters the scatter cannot be told and is left out."""
+    measured = int((~o.censored).sum())
+    free = [p for p in plan.model.parameters if p.name not in plan.fixed and p.name not in plan.model.chosen]
+    if plan.scatter and measured <= len(free):
+        fit = estimate(replace(plan, scatter=False), o)
+        note = "too few impacts to tell their scatter: the intervals have the errors of this record alone"
+        return replace(fit, notes=(*fit.notes, note))
+    return estimate(plan, o)
+
+
+def closures_of(fit: Fit, wake: bool) -> Closures:
+    """The bouncing sphere with the fitted law; parameters that are separate by a label are not known here."""
+    names = [p.name for p in fit.maximum.parameters]
+    values = dict(fit.likelihood.fixed) | dict(zip(names, map(float, fit.maximum.values), strict=True))
+    own = {p.name: values[p.name] for p in fit.likelihood.model.parameters}
+    e_dry = values["e_dry"] if isinstance(values.get("e_dry"), float) else None
+    law = FittedLaw(fit.likelihood.model, own)
+    return Closures(rebound=law, wake=OwnWake() if wake else None, e_dry=e_dry)
+
+
+@dataclass(frozen=True)
+class TrajectoryFit:
+    """A law fitted to whole trajectories; ``slopes`` is the slope-based fit, or why there is none."""
+
+    measured: Measured
+    wake: bool
+    fit: Fit
+    slopes: Fit | str
+
+    @property
+    def found(self) -> list[WholeTrajectory]:
+        """The records under the model that the fit is based on."""
+        return self.measured.found[self.wake]
+
+    def result(self) -> FitResult:
+        """What is kept: the fit, and beside it every record's unknowns, noise and distances."""
+        base = result_of(self.fit)
+        records = tuple(self._record(t) for t in self.found)
+        notes = [*base.notes, self.wake_in_words(), *in_words(self.found, self.fit, self.slopes)]
+        return base.model_copy(update={"trajectories": records, "notes": tuple(notes)})
+
+    def wake_in_words(self) -> str:
+        """Which model the frames prefer."""
+        gain, used = self.measured.preference(), "with" if self.wake else "without"
+        if len(self.measured.found) < 2:
+            return f"model {used} the wake of the approach, as asked for"
+        better = "with" if gain > 0 else "without"
+        clear = "" if abs(gain) > CLEAR else " (not clearly)"
+        return (
+            f"the frames prefer the model {better} the wake of the approach{clear}: ln of the evidence differs by "
+            f"{abs(gain):.1f}; the fit is {used} it"
+        )
+
+    def _record(self, t: WholeTrajectory) -> TrajectoryRecord:
+        path, rms, apex = distance_d(t, closures_of(self.fit, self.wake))
+        other = next((x for x in self.measured.found.get(not self.wake, []) if x.recording is t.recording), None)
+        return TrajectoryRecord(
+            record=t.recording.name,
+            wake=self.wake,
+            frames=len(t.recording.time_s),
+            frames_at_rest=t.recording.rest_frames,
+            reading_sigma_m=t.recording.sigma,
+            unknowns=t.unknowns,
+            correlated_sigma_m=t.sigma_u,
+            correlation_time_s=t.tau,
+            log_evidence=t.log_evidence,
+            log_evidence_other_wake=None if other is None else other.log_evidence,
+            rms_d=t.rms_d,
+            rms_law_d=rms,
+            apex_1_law_m=apex,
+            impacts_law=len(path.impacts),
+            map_error=t.map_error,
+        )
+
+
+def fit_law(measured: Measured, plan: Plan, how: Reading, wake: bool | None = None) -> TrajectoryFit:
+    """A law fitted to the records under the model that they prefer, or with the wake or without as said."""
+    wake = measured.preferred if wake is None else wake
+    fit = law_fit(plan, observations(measured.found[wake], how))
+    try:
+        slopes: Fit | str = law_fit(plan, slope_observations(measured.records, how))
+    except InputError as error:
+        slopes = str(error.defects[0])
+    return TrajectoryFit(measured, wake, fit, slopes)

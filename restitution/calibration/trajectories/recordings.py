@@ -1,0 +1,218 @@
+"""Recorded trajectories for a fit: their frames, and what is known beforehand of start, clock and scale.
+
+A record is a shipped one or a file of time and gap with its conditions. What it starts with is told by its frames:
+
+- ``speed``: it falls steadily; the speed at the first frame is open, within 5 % of the mean of the approach;
+- ``height``: it starts from rest, or is still far below the terminal speed; the height of the release is open;
+- ``impact``: it begins on a rebound; the speed of the impact that nobody filmed is open, near the quoted one, or,
+  where none is quoted, within 30 % of the first rebound over 0.75.
+
+Frames at rest tell where the wall is and nothing else: one mean of them takes part, so that a long tail neither
+outweighs the flights nor is lost.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution import datasets
+from restitution.bounce import Release, terminal_speed
+from restitution.bounce.agreement import release_reaching
+from restitution.calibration.estimation.parameters import Normal
+from restitution.calibration.reading.reading import Reading
+from restitution.calibration.reading.track_impacts import track_of
+from restitution.calibration.trajectories.recording_checks import begins_rising, bounces, check
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.stokes import H_FILM
+from restitution.tables.reading import read_header
+from restitution.tracks import Track, contacts
+
+SCALE, LEVEL_D = 0.01, 0.01
+"""Standard deviations where none is stated: relative error of the scale of length; zero of the gap in d."""
+STEADY, UNSEEN, STILL_FALLING = 0.05, 0.3, 0.7
+_RUN_UP = 5.0
+
+
+@dataclass(frozen=True)
+class Start:
+    """What is open at the start, with its prior: m/s or m. ``gap`` is that of the release where it is known."""
+
+    kind: Literal["speed", "height", "impact"]
+    prior: Normal
+    gap: float = 0.0
+    release_speeds: tuple[float, ...] = ()
+    """Of ``impact``: quadratic in the impact speed over its mean less 1, the release speed at ``gap``."""
+
+    @property
+    def name(self) -> str:
+        """In words, with its unit."""
+        return {"speed": "release_speed_m_s", "height": "release_gap_m", "impact": "impact_speed_m_s"}[self.kind]
+
+    def release(self, value: float) -> Release:
+        """The release at a value of what is open."""
+        if self.kind == "height":
+            return Release(value, 0.0)
+        if self.kind == "speed":
+            return Release(self.gap, value, developed=True)
+        speed = float(np.polyval(self.release_speeds, value / self.prior.mean - 1))
+        return Release(self.gap, speed, developed=True)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Frames in motion (``time_s``, ``gap_m`` above the level at rest), and what is known beforehand.
+
+    ``clock`` is the prior of the recorded time of the first contact, or of the release where the release is known.
+    """
+
+    name: str
+    conditions: Conditions
+    track: Track
+    time_s: NDArray
+    gap_m: NDArray
+    sigma: float
+    rest_frames: int
+    rest_gap: float
+    start: Start
+    clock: Normal
+    clock_of: Literal["contact", "release"]
+    clock_rate: float
+    """Standard deviation of the relative error of the time axis; 0: none."""
+    scale: float
+    level: float
+    contacts_s: tuple[float, ...]
+    """Of each bounce that was seen to rise, about when it was; nan where the record begins after it."""
+    digest: str
+    notes: tuple[str, ...] = ()
+
+    @property
+    def fall_time(self) -> float:
+        """Sqrt(d/g), the time scale of everything in s."""
+        return math.sqrt(self.conditions.sphere.diameter / self.conditions.gravity)
+
+
+def read_recordings(paths: Sequence[str], how: Reading) -> list[Recording]:
+    """All records; raises :class:`InputError` with what is wrong in each."""
+    found, defects = [], []
+    for path in dict.fromkeys(map(str, paths)):
+        try:
+            found.append(read_recording(path, how))
+        except InputError as error:
+            defects += [d if d.file else replace(d, file=path) for d in error.defects]
+    if defects:
+        raise InputError(*defects)
+    return found
+
+
+def read_recording(path: str, how: Reading) -> Recording:
+    """One record: a file, or a shipped one by its name."""
+    if Path(path).exists():
+        _check_header(path, how)
+        track, conditions = track_of(path, how)
+        return recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())
+    if path not in datasets.names():
+        raise InputError(Defect("does not exist, and no shipped record has this name", path))
+    r = datasets.resource(path)
+    if r.table != "trajectory":
+        raise InputError(Defect(f"is a {r.table} table; a trajectory of time and gap is needed", path))
+    track, error = datasets.load_track(path), r.digitisation_error
+    found = recording(
+        path, track, how.conditions or r.conditions, r.hash.removeprefix("sha256:"), r.quoted.get("release_gap_m"),
+        error.offset_sigma.get("gap_m"),
+    )  # fmt: skip
+    clock = found.clock
+    if found.clock_of == "release":
+        clock = Normal(0.0, error.offset_sigma.get("time_s", clock.sigma))
+    return replace(
+        found,
+        clock=clock,
+        clock_rate=error.scale_sigma.get("time_s", 0.0),
+        scale=error.scale_sigma.get("gap_m", SCALE),
+    )
+
+
+def _check_header(path: str, how: Reading) -> None:
+    """Refuse a file without time and gap."""
+    header = read_header(path)
+    for name in ("time_s", "gap_m"):
+        own = how.columns.get(name, name)
+        if own not in header:
+            rule = f"is missing: a trajectory has time and gap; the header names {', '.join(header)}"
+            raise InputError(Defect(rule, path, 1, own))
+
+
+def recording(
+    name: str, track: Track, conditions: Conditions, digest: str = "", release_gap: float | None = None,
+    level_sigma: float | None = None,
+) -> Recording:  # fmt: skip
+    """A record from its track; ``release_gap`` (m) is that of a release from rest, ``level_sigma`` its error."""
+    d = conditions.sphere.diameter
+    found = contacts(track)
+    check(name, track, found, conditions)
+    level = found.level or 0.0
+    rest = found.contacts[-1].approach.stop if found.level is not None else len(track.time_s)
+    time, gap = track.time_s[:rest], track.value[:rest] - level
+    rising = begins_rising(track)
+    notes = []
+    if rest < len(track.time_s):
+        n = len(track.time_s) - rest
+        notes.append(f"{name}: the {n} frames at rest tell the level of the wall ({level:.2g} m) and nothing else")
+    zero = LEVEL_D * d if level_sigma is None else level_sigma
+    approach = np.arange(0) if rising else np.array(found.contacts[0].approach, int)
+    start = _start(name, time, gap, approach, conditions, release_gap, zero, notes)
+    dt = float(np.median(np.diff(track.time_s)))
+    if start.kind == "height" and release_gap is not None:
+        clock, clock_of = Normal(0.0, dt), "release"
+    else:
+        touch = 0.0
+        if not rising:
+            last = approach[-2:]
+            speed = -np.polyfit(time[last], gap[last], 1)[0] if len(last) > 1 else terminal_speed(conditions)
+            touch = float(time[last[-1]] + max(gap[last[-1]], 0.0) / max(speed, 1e-9))
+        elif abs(time[0]) > 2 * dt:
+            touch = float(time[0] - gap[0] * (time[1] - time[0]) / max(gap[1] - gap[0], 1e-12))
+        clock, clock_of = Normal(touch, dt), "contact"
+    return Recording(
+        name, conditions, track, time, gap, track.sigma, len(track.time_s) - rest,
+        float(np.mean(track.value[rest:]) - level) if rest < len(track.time_s) else 0.0,
+        start, clock, clock_of, 0.0, SCALE, zero, bounces(track, found)[0], digest, tuple(notes),
+    )  # fmt: skip
+
+
+def _start(
+    name: str, time: NDArray, gap: NDArray, approach: NDArray, conditions: Conditions, release_gap: float | None,
+    zero: float, notes: list[str],
+) -> Start:  # fmt: skip
+    d, terminal = conditions.sphere.diameter, terminal_speed(conditions)
+    if release_gap is not None:
+        return Start("height", Normal(release_gap, zero))
+    frames = approach[gap[approach] > H_FILM * d]
+    if len(frames) >= 2:
+        near = frames[: max(2, min(4, len(frames) // 2))]
+        first = -float(np.polyfit(time[near], gap[near], 1)[0])
+        if first >= STILL_FALLING * terminal:
+            speed = -float(np.polyfit(time[frames], gap[frames], 1)[0])
+            return Start("speed", Normal(speed, STEADY * speed), float(gap[frames[0]]))
+        # Free fall up to here: a little more than it, by the drag.
+        height = float(gap[frames[0]] + max(first, 0.0) ** 2 / (2 * conditions.free_fall))
+        notes.append(f"{name}: taken to start from rest, at a gap of about {1e3 * height:.3g} mm")
+        return Start("height", Normal(height, 0.1 * (height - gap[frames[0]]) + 0.02 * d))
+    if conditions.impact is not None:
+        quoted = conditions.impact
+        impact = Normal(quoted.speed, max(quoted.speed_sigma, 1e-3 * quoted.speed))
+    else:
+        out = float(np.max(np.diff(gap[:4]) / np.diff(time[:4])))
+        impact = Normal(out / 0.75, UNSEEN * out / 0.75)
+        notes.append(f"{name}: begins on a rebound whose impact was not filmed; its speed is open within 30 %")
+    about = np.array([-0.04, 0.0, 0.04]) if conditions.impact is not None else np.array([-0.3, 0.0, 0.3])
+    reach = [release_reaching(float(impact.mean * (1 + x)), conditions, gap=_RUN_UP * d).speed for x in about]
+    return Start("impact", impact, _RUN_UP * d, tuple(map(float, np.polyfit(about, reach, 2))))

@@ -1,0 +1,275 @@
+r"""Impacts from whole trajectories: every frame takes part, through the equation of motion of a bouncing sphere.
+
+The restitution of each bounce of a record is estimated with the start, the clock, the scale and the noise of the
+record (:mod:`.likelihood`), under gravity, drag, added mass, wall, history force and, if wanted, the
+wake of the approach; no rebound law takes part. Impact speed and e are those of the motion outside the film,
+carried to the wall: the ``far`` definition. A law is then fitted to them, with their errors, as to any impacts
+(:mod:`.estimation.fitting`). What a record says of its e being nearly normal, that is the likelihood of the
+frames,
+
+    p(frames | theta, scatter) = int p(frames | e) p(e | law, theta, scatter) de,
+
+but for the correlation between the errors of different bounces of a record, which the fit leaves out.
+
+The trajectories are those of quadratic maps (:mod:`.flight_map`), moved until the estimate lies within them; what
+they differ by from a direct integration stands in the result.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.bounce import Closures, IntegrationError, OwnWake, Trajectory, bounce, terminal_speed
+from restitution.bounce.agreement import agreement
+from restitution.calibration.trajectories.flight_map import expand_about
+from restitution.calibration.trajectories.likelihood import Marginal, Noise, RecordLikelihood
+from restitution.calibration.trajectories.recordings import Recording
+from restitution.calibration.trajectories.unknowns import restitution_name
+from restitution.errors import Defect, InputError
+from restitution.impacts.find import find_impacts
+from restitution.stokes import H_FILM, Speed, convention
+
+TOLERANCE = 1e-5
+"""Relative error of an integration step; the trajectory is then within 1e-4 d of the converged one."""
+_ROUNDS = 10
+_E_STEP, _START_STEP = 0.02, 0.02
+
+
+@dataclass(frozen=True)
+class WholeTrajectory:
+    """What one record says under the model.
+
+    ``mean`` and ``covariance`` of the unknowns ``names``; ``sigma_u`` and ``tau`` of the correlated noise, each as
+    median and standard deviation of its logarithm; ``log_evidence`` is ln of the density of all frames, everything
+    unknown integrated out. ``path`` is integrated at the estimate, ``map_error`` what the map differs from it by,
+    at most, in standard deviations of a reading. ``rms_d``: residuals from the first contact on, in diameters.
+    """
+
+    recording: Recording
+    wake: bool
+    likelihood: RecordLikelihood
+    names: tuple[str, ...]
+    mean: NDArray
+    covariance: NDArray
+    sigma_u: tuple[float, float]
+    tau: tuple[float, float]
+    log_evidence: float
+    path: Trajectory
+    map_error: float
+    rms_d: float
+
+    @property
+    def sigma(self) -> NDArray:
+        """Standard deviations of the unknowns."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def unknowns(self) -> dict[str, tuple[float, float]]:
+        """Mean and standard deviation of each unknown, by its name with its unit."""
+        return {n: (float(m), float(s)) for n, m, s in zip(self.names, self.mean, self.sigma, strict=True)}
+
+    @property
+    def restitutions(self) -> list[tuple[float, float]]:
+        """Mean and standard deviation of the e of each bounce."""
+        return [self.unknowns[restitution_name(n)] for n in range(1, self.bounces + 1)]
+
+    @property
+    def bounces(self) -> int:
+        """How many rebounds were seen."""
+        return self.likelihood.bounces
+
+    def impact_moments(self) -> tuple[NDArray, NDArray, NDArray]:
+        """Impact speeds in m/s and restitutions, (bounces,) each, and their covariance, (2 bounces, 2 bounces)."""
+        n, steps = self.bounces, self.likelihood.flights.steps
+        here = self.likelihood.named(self.mean)
+        x, at = here.flight, here.flight_places
+        J = np.zeros((2 * n, len(x)))
+        for j, step in enumerate(0.1 * steps):
+            more, less = x.copy(), x.copy()
+            more[j], less[j] = more[j] + step, less[j] - step
+            speeds = [self.likelihood.flights.expand(v).impact_speed[:n] for v in (more, less)]
+            J[:n, j] = (speeds[0] - speeds[1]) / (2 * step)
+        J[n:, 1:] = np.eye(n)
+        speeds = self.likelihood.flights.expand(x).impact_speed[:n]
+        return speeds, here.e, J @ self.covariance[at, at] @ J.T
+
+    def rows(self, stokes: str = "st") -> list[dict]:
+        """Its impacts in the schema of the impact table; without a rebound as :mod:`restitution.impacts` has it.
+
+        Bounces whose flights before or after stay within the film are left out: the far speed does not see them.
+        """
+        r, per_speed = self.recording, convention(stokes).per_speed(self.recording.conditions)
+        v, e, C = self.impact_moments()
+        outside = self.outside()
+        about = {
+            "record": r.name, "kind": "measured", "outcome": "rebound", "speed_definition": str(Speed.FAR),
+            "stokes_convention": stokes, "e_dry": r.conditions.sphere.e_dry,
+            "note": "from the whole trajectory" + (", wake of the approach" if self.wake else ""),
+        }  # fmt: skip
+        found = []
+        for n in np.flatnonzero(outside):
+            v_sigma, e_sigma = np.sqrt(C[n, n]), np.sqrt(C[n + self.bounces, n + self.bounces])
+            found.append(
+                about | {
+                    "impact": int(n) + 1, "time_s": self.contact_times()[n],
+                    "impact_speed_m_s": v[n], "impact_speed_sigma_m_s": v_sigma,
+                    "stokes": v[n] * per_speed, "stokes_sigma": v_sigma * per_speed,
+                    "rebound_speed_m_s": e[n] * v[n], "e_eff": e[n], "e_eff_sigma": e_sigma,
+                    "e_stokes_correlation": C[n, n + self.bounces] / (v_sigma * e_sigma),
+                }
+            )  # fmt: skip
+        slopes = find_impacts(r.track, r.conditions, Speed.FAR, stokes, r.name).rows
+        last = max((row["impact"] for row in found), default=0)
+        return found + [row for row in slopes if row["outcome"] == "not_resolved" and row["impact"] > last]
+
+    def outside(self) -> NDArray:
+        """Of each bounce, whether the flights before and after it leave the film."""
+        flights = self.likelihood.model(self.mean)
+        leaves = flights.gap.max(axis=1) > H_FILM * self.recording.conditions.sphere.diameter
+        return leaves[: self.bounces] & leaves[1 : self.bounces + 1]
+
+    def contact_times(self) -> NDArray:
+        """Recorded times of the bounces, in s."""
+        flights, u = self.likelihood.model(self.mean), self.likelihood.named(self.mean)
+        zero = flights.contacts[1] if self.recording.clock_of == "contact" else 0.0
+        return (flights.contacts[1 : self.bounces + 1] - zero) / (1 + u.rate) + u.time
+
+
+def whole_trajectories(records: Sequence[Recording], wake: bool) -> list[WholeTrajectory]:
+    """All records under the model; raises :class:`InputError` naming the record where that cannot be done."""
+    return [whole_trajectory(r, wake) for r in records]
+
+
+def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
+    """One record under the model."""
+    centre = _first_guess(r, wake)
+    steps = np.full(len(centre), _E_STEP)
+    steps[0] = min(r.start.prior.sigma, _START_STEP * r.start.prior.mean)
+    noise, eta, narrow = Noise.typical(r), None, False
+    for _ in range(_ROUNDS):
+        centre[1:] = np.clip(centre[1:], steps[1:], 1 - steps[1:])
+        before = {"height": 0.0, "speed": -centre[0], "impact": -_fall_speed(r)}[r.start.kind]
+        flights = expand_about(lambda x: integrate(r, x, wake), centre, steps, len(centre), before)
+        if flights.flights < len(centre):  # a last bounce so low that the model has none, or not in all of the map
+            if flights.flights < 2:
+                raise InputError(Defect("the model does not bounce where the record does", r.name))
+            centre, steps, eta = centre[: flights.flights], steps[: flights.flights], None
+            continue
+        found = RecordLikelihood(r, flights, noise, np.zeros(0))
+        mean, sigma = found.prior
+        if eta is None:
+            values = mean.copy()
+            found.named(values).flight[:] = centre
+            eta = (values - mean) / sigma
+        found = RecordLikelihood(r, flights, noise, eta).settled()
+        noise, eta = found.noise, found.eta
+        m = found.marginal()
+        new = found.named(found.values(m.moments()[0])).flight
+        moved = np.max(np.abs(new - centre) / steps)
+        centre = new
+        if narrow and moved < 1.5:
+            break
+        if moved < 1.5:
+            own = found.prior[1] * np.sqrt(np.diag(m.moments()[1]))
+            steps, narrow = np.clip(found.named(own).flight, 0.02 * steps, steps), True
+    else:
+        raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", r.name))
+    return _summary(r, wake, found, m)
+
+
+def _summary(r: Recording, wake: bool, found: RecordLikelihood, m: Marginal) -> WholeTrajectory:
+    """The numbers, and a direct integration at the estimate."""
+    eta, C = m.moments()
+    values, sigma = found.values(eta), found.prior[1]
+    path = integrate(r, found.named(values).flight, wake)
+    flights = found.model(values)
+    time = found.own_time(values, flights)
+    inside = (time > 0) & (time < flights.contacts[-1])
+    away = np.abs(path.gap(time) - flights(time)[0])[inside]
+    residual = r.gap_m - found.predict(values)
+    after = time >= flights.contacts[1]
+    return WholeTrajectory(
+        r, wake, found, found.names, values, C * np.outer(sigma, sigma),
+        _log_moments(found.noise.sigma_u, m.weights), _log_moments(found.noise.tau, m.weights), m.log, path,
+        float(np.max(away, initial=0.0) / r.sigma),
+        float(np.sqrt(np.mean(residual[after] ** 2)) / r.conditions.sphere.diameter),
+    )  # fmt: skip
+
+
+def _log_moments(values: NDArray, weights: NDArray) -> tuple[float, float]:
+    """Exp of the mean of the logarithm, and its standard deviation."""
+    ln = np.log(values)
+    mean = float(weights @ ln)
+    return float(np.exp(mean)), float(np.sqrt(max(weights @ (ln - mean) ** 2, 0.0)))
+
+
+def integrate(r: Recording, x: NDArray, wake: bool) -> Trajectory:
+    """The trajectory of a record with ``x``: what is open at its start, and the restitution of each bounce."""
+    closures = Closures(measured=tuple(map(float, np.clip(x[1:], 0, 1))), wake=OwnWake() if wake else None)
+    return _fly(r, float(x[0]), closures)
+
+
+def _fly(r: Recording, start: float, closures: Closures) -> Trajectory:
+    release = r.start.release(start)
+    end = 4 * np.ptp(r.time_s) + 3 * release.gap / max(release.speed, _fall_speed(r))
+    try:
+        path = bounce(r.conditions, release, closures, float(end), TOLERANCE)
+    except IntegrationError as error:
+        raise InputError(Defect(str(error), r.name)) from None
+    if not path.impacts:
+        raise InputError(Defect("the model does not reach the wall within the record", r.name))
+    return path
+
+
+def _fall_speed(r: Recording) -> float:
+    """The scale of an approach's speed: terminal, or that of a free fall over a diameter."""
+    return min(terminal_speed(r.conditions), math.sqrt(r.conditions.free_fall * r.conditions.sphere.diameter))
+
+
+def _first_guess(r: Recording, wake: bool) -> NDArray:
+    """Start at its prior, and for each bounce the restitution whose flight is nearest to the frames."""
+    from scipy.optimize import minimize_scalar
+
+    d, known, begin = r.conditions.sphere.diameter, [], r.start.prior.mean
+    touches = [r.clock.mean if math.isnan(t) else t for t in r.contacts_s]
+    if r.clock_of == "contact":
+        touches[0] = r.clock.mean
+    ends = [*touches[1:], np.inf]
+    for touch, end in zip(touches, ends, strict=True):
+        here = (r.time_s > touch) & (r.time_s < end)
+        time, gap = r.time_s[here] - touch, r.gap_m[here]
+
+        def misfit(e: float, time: NDArray = time, gap: NDArray = gap) -> float:
+            path = integrate(r, np.array([begin, *known, e]), wake)
+            if len(path.impacts) <= len(known):
+                return float(np.sum(gap**2) / d**2)
+            after = path.gap(path.impacts[len(known)].time_s + time)
+            return float(np.sum((after - gap) ** 2) / d**2)
+
+        found = minimize_scalar(misfit, bounds=(0.05, 0.98), method="bounded", options={"xatol": 5e-3})
+        known.append(float(found.x))
+    return np.array([begin, *known])
+
+
+def distance_d(found: WholeTrajectory, closures: Closures) -> tuple[Trajectory, float, float]:
+    """The model with other closures, released as estimated: its trajectory, rms distance in d, first apex in m.
+
+    The clocks are brought together on the approach alone (:func:`restitution.bounce.agreement.agreement`).
+    """
+    r = found.recording
+    path = _fly(r, float(found.likelihood.named(found.mean).start), closures)
+    apexes = path.apexes()
+    return path, agreement(path, r.track).rms_d, float(apexes[0]) if len(apexes) else 0.0
+
+
+def band(found: WholeTrajectory, time: NDArray, draws: int = 200, seed: int = 0) -> NDArray:
+    """Gap in m of the model at recorded ``time`` for draws from what is known of the unknowns, (draws, times)."""
+    rng = np.random.default_rng(seed)
+    root = np.linalg.cholesky(found.covariance + 1e-18 * np.diag(np.maximum(np.diag(found.covariance), 1e-30)))
+    values = found.mean + rng.standard_normal((draws, len(found.mean))) @ root.T
+    return np.array([found.likelihood.predict(v, time) for v in values])

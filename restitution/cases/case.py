@@ -1,0 +1,150 @@
+"""A simulation case: what is released how, in which fluid, and what the solver and its closures are told.
+
+One TOML file serves the resolved solver (``restitution simulate``) and the point-particle model, which takes no
+``[numerics]``. Fluid, sphere, wall and gravity come from a shipped ``record`` where one is named; keys given
+beside it replace its own. Lengths are in m but where a key says otherwise: ``_d`` diameters, ``_cells``,
+``_steps``. Files are read by :mod:`restitution.cases.reading`; what cannot be run is found by
+:mod:`restitution.cases.rules`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from restitution.conditions import Conditions, Fluid, NonNegative, Positive, Record, Sphere, Wall
+
+Restitution = Annotated[float, Field(ge=0, le=1, strict=True)]
+
+
+class Release(Record):
+    """How the sphere starts, at the gap ``gap_d``.
+
+    ``rest``: set free at rest. ``drive``: moved at u(t) = ``speed`` (1 - exp(-t/``ramp``)) towards the wall, speed
+    in m/s and ramp in s, until the gap is ``free_below_d``; free from there on. ``along`` is the speed along the
+    wall, in m/s, gained likewise: an oblique impact.
+    """
+
+    kind: Literal["rest", "drive"]
+    gap_d: Positive
+    speed: Positive | None = None
+    ramp: Positive | None = None
+    along: NonNegative = 0.0
+    free_below_d: Positive = 0.5
+
+
+class Numerics(Record):
+    """Grid, box and method of the resolved run.
+
+    ``lattice_speed`` is what ``reference_speed`` (m/s; by default the speed of the drive) becomes in cells a step:
+    it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high.
+    """
+
+    cells_per_diameter: Positive
+    lattice_speed: Positive = 0.05
+    reference_speed: Positive | None = None
+    width_d: Positive = 8.0
+    height_d: Positive = 13.0
+    sides: Literal["periodic", "no-slip", "free-slip"] = "periodic"
+    top: Literal["no-slip", "free-slip", "outlet"] = "no-slip"
+    precision: Literal["float32", "float64"] = "float32"
+    rates: Literal["two-relaxation-times", "dhumieres2002"] = "two-relaxation-times"
+    interpolation: Literal["linear", "central-linear"] = "linear"
+
+
+FilmForm = Literal["none", "lost_to_grid", "source_abstract_eq3", "nguyen_ladd_2002", "brenner_1961_difference"]
+
+
+class FilmModel(Record):
+    """The lubrication force added below the cut-off, constant below the ``floor``, in m.
+
+    ``lost_to_grid`` is what the grid lacks of the film, which fixes its cut-off
+    (:func:`lbm.spheres.film.lost_to_grid`); the other forms have one to choose, ``cut_off_cells``, by default 1.
+    At the floor sphere and wall touch; by default it is the larger of the stated roughnesses.
+    With ``tangential`` the film also resists sliding and turning at the wall, below the same cut-off.
+    """
+
+    form: FilmForm = "none"
+    cut_off_cells: Positive | None = None
+    floor: Positive | None = None
+    tension: Positive | None = None
+    """Tension in Pa at which the film cavitates as the sphere leaves (``cavitating_film``); else it holds."""
+    tangential: bool = False
+
+    @property
+    def cut_off(self) -> float:
+        """Cut-off in cells."""
+        if self.form == "lost_to_grid":
+            return 0.5
+        return 1.0 if self.cut_off_cells is None else self.cut_off_cells
+
+
+ContactMode = Literal["effective", "dry", "soft_linear", "soft_hertz"]
+
+
+class ContactModel(Record):
+    """What happens at the wall.
+
+    ``effective``: e_eff of the motion outside the film, by a rebound ``law`` with ``parameters`` or as
+    ``measured``, one value a bounce, "record" taking those of the record. ``dry``: e_dry at the film's floor.
+    ``soft_linear``, ``soft_hertz``: a contact of e_dry stretched over ``duration_steps``. None has friction: along
+    the wall the sphere feels the fluid alone.
+
+    ``added_mass`` is the fluid that is reversed with the sphere, over the fluid it displaces: 0.803 in potential
+    flow about a sphere that touches a wall. By default it is what the lattice makes of that at its resolution.
+    """
+
+    mode: ContactMode
+    law: str | None = None
+    parameters: dict[str, float] = Field(default_factory=dict)
+    measured: Literal["record"] | Annotated[tuple[Restitution, ...], Field(min_length=1)] | None = None
+    duration_steps: Positive | None = None
+    added_mass: NonNegative | None = None
+
+
+class Span(Record):
+    """When the run ends: ``after_contact`` s after the first contact, or ``duration`` s after the release.
+
+    A case without ``[contact]`` ends where the sphere would touch the wall. ``snapshot_interval`` in s.
+    """
+
+    after_contact: Positive | None = None
+    duration: Positive | None = None
+    snapshot_interval: Positive | None = None
+
+
+class Case(Record):
+    """A whole case. ``title`` and ``note`` are for readers; ``prediction`` says that no measured track exists."""
+
+    name: str
+    title: str = ""
+    note: str = ""
+    record: str | None = None
+    prediction: bool = False
+    fluid: Fluid
+    sphere: Sphere
+    wall: Wall | None = None
+    gravity: Positive = 9.81
+    release: Release
+    numerics: Numerics | None = None
+    film: FilmModel = FilmModel()
+    contact: ContactModel | None = None
+    run: Span
+
+    @property
+    def conditions(self) -> Conditions:
+        """Fluid, sphere, wall and gravity."""
+        return Conditions(fluid=self.fluid, sphere=self.sphere, wall=self.wall, gravity=self.gravity)
+
+    @property
+    def floor(self) -> float | None:
+        """Gap in m at which sphere and wall touch; None where nobody states one."""
+        stated = [b.roughness for b in (self.sphere, self.wall) if b is not None and b.roughness]
+        return self.film.floor if self.film.floor is not None else max(stated, default=None)
+
+    @property
+    def reference_speed(self) -> float | None:
+        """The speed in m/s that the lattice speed stands for."""
+        given = self.numerics.reference_speed if self.numerics is not None else None
+        return given if given is not None else self.release.speed

@@ -1,0 +1,121 @@
+"""Where cases come from: a TOML file of the user's, or one shipped with the package, by name.
+
+A file may name a ``base``, a shipped case or a file beside it, whose keys it then replaces one by one. A section
+that says anew of which kind it is (``form`` of a film, ``mode`` of a contact, ``kind`` of a release) replaces that
+of the base as a whole, its keys depending on it.
+"""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from restitution import datasets
+from restitution.cases.case import Case
+from restitution.cases.rules import defects
+from restitution.conditions import defects_of, read_toml
+from restitution.errors import Defect, InputError
+
+FOLDER = Path(__file__).parent / "shipped"
+TEMPLATE = Path(__file__).parent / "template.toml"
+"""An example with every key explained."""
+_KIND = {"film": "form", "contact": "mode", "release": "kind"}
+_DEEPEST = 5
+
+
+def names() -> list[str]:
+    """The names of the shipped cases."""
+    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+def read_case(given: str | Path) -> Case:
+    """The case of a file or of a shipped name; raises :class:`InputError` naming every field that is wrong."""
+    path = find(given)
+    content = _content(path)
+    content.setdefault("name", path.stem)
+    _with_record(content, str(path))
+    try:
+        case = Case.model_validate(content)
+    except ValidationError as error:
+        raise InputError(*defects_of(error, str(path))) from None
+    found = defects(case, str(path))
+    if found:
+        raise InputError(*found)
+    return case
+
+
+def find(given: str | Path) -> Path:
+    """The file of a case: as given, or the shipped one of that name."""
+    path = Path(given)
+    if path.is_file():
+        return path
+    known = names()
+    if str(given) in known:
+        return FOLDER / f"{given}.toml"
+    if path.is_dir():
+        raise InputError(Defect("is a folder; name the case's TOML file", str(given)))
+    near = difflib.get_close_matches(path.stem, known, n=3, cutoff=0.5)
+    hint = f"did you mean {' or '.join(near)}?" if near else "restitution simulate --list names those"
+    raise InputError(Defect(f"is no file and no shipped case; {hint}", str(given)))
+
+
+def _content(path: Path, depth: int = 0) -> dict[str, Any]:
+    """The keys of a file over those of its base."""
+    content = read_toml(path)
+    base = content.pop("base", None)
+    if base is None:
+        return content
+    if not isinstance(base, str) or depth == _DEEPEST:
+        rule = "must be the name of a case" if depth < _DEEPEST else f"more than {_DEEPEST} bases deep: a circle?"
+        raise InputError(Defect(rule, str(path), None, "base", str(base)))
+    beside = path.parent / f"{base.removesuffix('.toml')}.toml"
+    try:
+        below = _content(beside if beside.is_file() else find(base), depth + 1)
+    except InputError as error:
+        if error.defects[0].file != base:
+            raise  # it is about what stands in the base
+        raise InputError(Defect(error.defects[0].rule, str(path), None, "base", base)) from None
+    for reader in ("title", "note"):
+        below.pop(reader, None)
+    return _over(below, content)
+
+
+def _over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    """``above`` over ``below``, sections key by key but those that say anew of which kind they are."""
+    merged = dict(below)
+    for key, value in above.items():
+        both = isinstance(value, dict) and isinstance(below.get(key), dict)
+        merged[key] = {**below[key], **value} if both and _KIND.get(key) not in value else value
+    return merged
+
+
+def _with_record(content: dict[str, Any], file: str) -> None:
+    """Fill fluid, sphere, wall and gravity, and what the record states of the release, from the case's record."""
+    name = content.get("record")
+    if not isinstance(name, str):
+        return
+    try:
+        record = datasets.resource(name)
+    except InputError as error:
+        raise InputError(Defect(str(error), file, None, "record")) from None
+    if record.conditions is None:
+        rule = "is a reference table, not a record with fluid and sphere"
+        raise InputError(Defect(rule, file, None, "record", name))
+    stated = record.conditions.model_dump(include={"fluid", "sphere", "wall", "gravity"}, exclude_none=True)
+    for key, value in stated.items():
+        given = content.get(key)
+        if isinstance(value, dict) and isinstance(given, dict):
+            content[key] = {**value, **given}
+        else:
+            content.setdefault(key, value)
+    release = content.get("release")
+    if not isinstance(release, dict):
+        return
+    if "release_gap_m" in record.quoted:
+        gap = record.quoted["release_gap_m"] / record.conditions.sphere.diameter
+        content["release"] = release = {"gap_d": round(gap, 6), **release}
+    if release.get("kind") == "drive" and record.conditions.impact is not None:
+        content["release"] = {"speed": record.conditions.impact.speed, **release}

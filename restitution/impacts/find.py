@@ -1,0 +1,151 @@
+"""How e_eff is taken from a track: one row an impact, measured or simulated alike.
+
+    e_eff = v_out / v_in,    St = v_in * (St per speed of the stated convention),
+
+both speeds by one definition (:mod:`restitution.impacts.speed`). Values are medians, uncertainties half the
+central 68 % range of the draws, with a fixed seed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.impacts.speed import SpeedMeasure, Speeds, UnresolvedError
+from restitution.stokes import H_FILM, Speed, convention
+from restitution.tracks import DETECTION, Contact, Contacts, Track, contacts
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Impacts:
+    """Rows of the impact table, the noise that was used, and what could not be evaluated and why."""
+
+    rows: list[dict] = field(repr=False)
+    sigma: float
+    notes: list[str]
+
+    def table(self) -> pd.DataFrame:
+        """The rows as a table with the columns of the impact schema."""
+        import pandas as pd
+
+        from restitution import datasets
+
+        return pd.DataFrame(self.rows, columns=datasets.schema("impact").columns)
+
+
+def find_impacts(
+    track: Track,
+    conditions: Conditions,
+    speed: Speed | str = Speed.FAR,
+    stokes: str = "st",
+    record: str = "",
+    kind: str = "measured",
+    window_frames: int = 2,
+    h_film: float = H_FILM,
+    seed: int = 0,
+) -> Impacts:
+    """All impacts of a track.
+
+    ``stokes`` is the convention of the St reported; ``window_frames`` serves ``window`` and ``h_film`` (in
+    diameters) serves ``far`` only. A contact that cannot be evaluated gives no row but a note. Raises
+    :class:`InputError` where ``e_dry`` is not stated.
+    """
+    if conditions.sphere.e_dry is None:
+        raise InputError(Defect("must be stated: impacts are compared by e_eff / e_dry", field="sphere.e_dry"))
+    if not np.isfinite(track.sigma):
+        raise InputError("the numbers of the track are too large to compute with: wrong unit?")
+    found = contacts(track)
+    level = found.level or 0.0
+    measure = SpeedMeasure(
+        track, conditions, Speed(speed), window_frames, h_film * conditions.sphere.diameter, level
+    )
+    rows, notes = [], _remarks(track, conditions, found)
+    for i, contact in enumerate(_with_quoted_first(track, conditions, found, notes)):
+        try:
+            speeds = measure(contact, np.random.default_rng([seed, i]))
+        except UnresolvedError as reason:
+            frame = contact.approach[-1] if contact.approach else contact.rebound[0]
+            notes.append(f"impact {i + 1}, near t = {track.time_s[frame]:.4g} s: {reason}")
+            continue
+        rows.append({"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, stokes))
+    return Impacts(rows, track.sigma, notes)
+
+
+def _remarks(track: Track, conditions: Conditions, found: Contacts) -> list[str]:
+    """What about a track makes one doubt its unit or its zero."""
+    d, remarks = conditions.sphere.diameter, []
+    if track.quantity == "gap" and np.min(track.value) > 0.2 * d:
+        remarks.append(
+            f"the gap never falls below {np.min(track.value):.3g} m, {np.min(track.value) / d:.2g} d: "
+            "is it the height of the centre? It must be that of the lowest point"
+        )
+    fastest = np.max(np.abs(np.diff(track.value) / np.diff(track.time_s)), initial=0.0)
+    if track.quantity == "gap" and not 1e-3 < fastest < 30:
+        remarks.append(f"the greatest speed in the track is {fastest:.2g} m/s: are the units right?")
+    if found.level is not None and abs(found.level) > DETECTION * track.sigma:
+        remarks.append(f"the sphere rests at a gap of {found.level:.3g} m: gaps are counted from there")
+    return remarks
+
+
+def _with_quoted_first(track: Track, conditions: Conditions, found: Contacts, notes: list[str]) -> list[Contact]:
+    """The contacts, preceded by the one before the first frame if the record begins on a rebound."""
+    end = found.contacts[0].approach.stop if found.contacts else len(track.time_s)
+    flight, limit = track.value[:end], DETECTION * track.sigma
+    if track.quantity == "gap":
+        # rising at once, not lifted some time after the record begins
+        rising = end >= 3 and flight[2] - flight[0] > limit / 2 and np.max(flight) - flight[0] > limit
+    else:
+        rising = end >= 3 and flight[0] > limit
+    if rising and conditions.impact is not None:
+        return [Contact(range(0), None, range(end)), *found.contacts]
+    if rising:
+        notes.append("the record begins on a rebound; give [impact] speed in the conditions to use it")
+    elif conditions.impact is not None:
+        notes.append("[impact] in the conditions is not used: the record does not begin on a rebound")
+    return found.contacts
+
+
+def _row(found: Speeds, conditions: Conditions, speed: Speed | str, stokes: str) -> dict:
+    per_speed = convention(stokes).per_speed(conditions)
+    v_in, v_in_sigma = _summary(found.v_in)
+    row = {
+        "outcome": "rebound" if found.v_out is not None else "not_resolved",
+        "time_s": _summary(found.time_s)[0],
+        "speed_definition": str(Speed(speed)),
+        "impact_speed_m_s": v_in,
+        "impact_speed_sigma_m_s": v_in_sigma,
+        "stokes_convention": stokes,
+        "stokes": v_in * per_speed,
+        "stokes_sigma": v_in_sigma * per_speed,
+        "e_dry": conditions.sphere.e_dry,
+        "note": found.note,
+    }
+    if found.v_out is None:
+        slowest = np.nanquantile(found.v_in, 0.15866)
+        return row | {"e_eff_upper": min(1.0, found.v_out_upper / slowest)}
+    e = found.v_out / found.v_in
+    row["rebound_speed_m_s"], row["rebound_speed_sigma_m_s"] = _summary(found.v_out)
+    row["e_eff"], row["e_eff_sigma"] = _summary(e)
+    row["e_stokes_correlation"] = _correlation(e, found.v_in)
+    return row
+
+
+def _correlation(a: NDArray, b: NDArray) -> float:
+    """Correlation of two quantities over the central 95 % of their draws; 0 where one does not vary."""
+    (low_a, high_a), (low_b, high_b) = np.nanquantile(a, (0.025, 0.975)), np.nanquantile(b, (0.025, 0.975))
+    central = (a > low_a) & (a < high_a) & (b > low_b) & (b < high_b)
+    return float(np.corrcoef(a[central], b[central])[0, 1]) if central.any() else 0.0
+
+
+def _summary(draws: NDArray) -> tuple[float, float]:
+    """Median and half the central 68.27 % range."""
+    low, middle, high = np.nanquantile(draws, (0.15866, 0.5, 0.84134))
+    return float(middle), float((high - low) / 2)

@@ -1,0 +1,175 @@
+"""What the whole trajectories say of Eq. (4): all positions of all measured records, in the Fig. 1 report.
+
+The records become restitutions of their bounces by the equation of motion
+(:mod:`restitution.calibration.trajectories.whole_trajectories`), with the wake of the approach and without; the
+forms of Eq. (4) with K fitted are then ranked as in :mod:`restitution.report.fig1.verdict`, a record being a
+source.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from restitution.calibration.estimation.plan import Plan
+from restitution.calibration.estimation.rebound_model import model_of
+from restitution.calibration.reading.reading import Reading
+from restitution.calibration.result.fit_result import result_of
+from restitution.calibration.result.prediction import predict
+from restitution.calibration.result.ranking import Ranking, Score, rank
+from restitution.calibration.trajectories.fit import CLEAR, Measured, closures_of, observations
+from restitution.calibration.trajectories.recordings import read_recordings
+from restitution.calibration.trajectories.whole_trajectories import distance_d
+from restitution.report.fig1.verdict import FORMS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory
+    from restitution.conditions import Conditions
+
+BOUNCES = 3
+"""Bounces of each record whose restitution is tabulated."""
+MODELS = {True: "with the wake of the approach", False: "without the wake"}
+
+
+@dataclass(frozen=True)
+class Trajectories:
+    """The records under both models, and the forms of Eq. (4) ranked under each."""
+
+    measured: Measured
+    rankings: dict[bool, Ranking]
+
+    @property
+    def best(self) -> Score:
+        """The best supported form under the model that the frames prefer."""
+        return self.rankings[self.measured.preferred].scores[0]
+
+    def band(self, St: NDArray, e_dry: float, conditions: Conditions) -> tuple[float, NDArray]:
+        """K of the best form, and where its curve lies with 95 %, shape (n, 2)."""
+        found = predict(result_of(self.best.fit), St, e_dry, conditions)
+        # Four digits: what a search for a maximum gives on any machine.
+        return float(self.best.fit.maximum.values[0]), np.round(found.law["95%"], 4)
+
+    @cached_property
+    def distances(self) -> dict[str, tuple[float, float]]:
+        """By record, rms distance in d and first apex in m of the model with the best form and its one K."""
+        found = self.measured.found[self.measured.preferred]
+        closures = closures_of(self.best.fit, self.measured.preferred)
+        return {t.recording.name: distance_d(t, closures)[1:] for t in found}
+
+    def frames(self) -> int:
+        """How many positions take part."""
+        return sum(len(r.time_s) + r.rest_frames for r in self.measured.records)
+
+
+def gather(names: Sequence[str]) -> Trajectories:
+    """All records of these names."""
+    how = Reading()
+    measured = Measured.of(read_recordings(names, how))
+    plans = [(name, Plan(model_of(name))) for name in FORMS]
+    rankings = {wake: rank(plans, observations(measured.found[wake], how)) for wake in measured.found}
+    return Trajectories(measured, rankings)
+
+
+def _K(score: Score, level: float = 0.95) -> tuple[float, float, float]:
+    low, high = score.fit.maximum.intervals[level][0]
+    return float(score.fit.maximum.values[0]), float(low), float(high)
+
+
+def in_words(t: Trajectories) -> list[str]:
+    """The verdict, said only as far as the scores go."""
+    gain, records = t.measured.preference(), t.measured.records
+    better = MODELS[gain > 0]
+    by_record = _gains(t)
+    for_wake = [name for name, g in by_record.items() if g > CLEAR]
+    against = [name for name, g in by_record.items() if g < -CLEAR]
+    words = [
+        f"All {t.frames()} positions of {len(records)} records together prefer the model {better} by "
+        f"{abs(gain):.0f} in ln of the evidence, whatever the law. Of single records {_named(for_wake)} clearly "
+        f"prefer it with the wake, {_named(against)} without (by more than {CLEAR:g})."
+    ]
+    for wake in (True, False):
+        ranking = t.rankings[wake]
+        values = [
+            f"{s.label} {k:.1f} ({low:.1f} to {high:.1f})" for s in ranking.scores for k, low, high in [_K(s)]
+        ]
+        first, *others = ranking.rows()
+        apart = [row.law for row in others if row.separated]
+        near = [f"{row.law} by {row.behind:.1f} ± {row.behind_error:.1f}" for row in others if not row.separated]
+        tell = f"separated from it: {', '.join(apart)}" if apart else "separated from it: none"
+        behind = f"; not separated: {', '.join(near)}" if near else ""
+        words.append(
+            f"{MODELS[wake].capitalize()}, K (95 % interval): {'; '.join(values)}. {first.law} predicts impacts "
+            f"left out best; {tell}{behind} (difference in log predictive density)."
+        )
+    outside = [
+        f"{s.label} {MODELS[wake]}"
+        for wake in (True, False)
+        for s in t.rankings[wake].scores
+        if not _K(s)[1] <= 18 <= _K(s)[2]
+    ]
+    if len(outside) == sum(len(ranking.scores) for ranking in t.rankings.values()):
+        words.append("K = 18 lies outside the 95 % interval of every form under both models.")
+    elif outside:
+        words.append(f"K = 18 lies outside the 95 % interval of {', '.join(outside)}.")
+    return words
+
+
+def _named(records: list[str]) -> str:
+    return ", ".join(records) or "none"
+
+
+def _gains(t: Trajectories) -> dict[str, float]:
+    pairs = zip(t.measured.found[True], t.measured.found[False], strict=True)
+    return {a.recording.name: a.log_evidence - b.log_evidence for a, b in pairs}
+
+
+def table(t: Trajectories) -> list[dict]:
+    """Rows of the forms for the page and the CSV file."""
+    rows = []
+    for wake in (True, False):
+        for row in t.rankings[wake].rows():
+            s, (K, low, high) = row.score, _K(row.score)
+            names = [p.name for p in s.fit.maximum.parameters]
+            rows.append(
+                {
+                    "model": MODELS[wake], "law": row.law, "K": K, "K_low_95": low, "K_high_95": high,
+                    "scatter": float(s.fit.maximum.values[names.index("scatter")]), "impacts": len(s.loo),
+                    "log_likelihood": s.log_likelihood, "elpd_loo": s.elpd_loo, "behind_best": row.behind,
+                    "behind_best_error": row.behind_error, "elpd_leave_record_out": s.elpd_loso,
+                    "separated_from_best": row.separated,
+                }
+            )  # fmt: skip
+    return rows
+
+
+def records(t: Trajectories) -> list[dict]:
+    """Rows of the records for the page and the CSV file: each under both models."""
+    rows = []
+    for wake in (True, False):
+        for found in t.measured.found[wake]:
+            rows.append(_record(found, wake, t))
+    return rows
+
+
+def _record(found: WholeTrajectory, wake: bool, t: Trajectories) -> dict:
+    d = found.recording.conditions.sphere.diameter
+    scale, scale_sigma = found.unknowns["scale"]
+    shown = wake == t.measured.preferred
+    rms, apex = t.distances[found.recording.name] if shown else (np.nan, np.nan)
+    row = {
+        "record": found.recording.name, "model": MODELS[wake], "frames": len(found.recording.time_s),
+        "frames_at_rest": found.recording.rest_frames, "ln_evidence": found.log_evidence,
+        "correlated_noise_d": found.sigma_u[0] / d, "correlation_time_s": found.tau[0],
+        "scale": scale, "scale_sigma": scale_sigma, "rms_d": found.rms_d, "rms_law_d": rms,
+        "first_apex_law_m": apex,
+    }  # fmt: skip
+    e = found.restitutions + [(np.nan, np.nan)] * BOUNCES
+    for n in range(BOUNCES):
+        row[f"e_{n + 1}"], row[f"e_{n + 1}_sigma"] = e[n]
+    return row

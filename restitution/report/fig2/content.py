@@ -1,0 +1,151 @@
+"""Figure 2: the bouncing sphere in time, simulated and measured; what the report is made of.
+
+The report draws and scores kept runs (:mod:`restitution.runs.kept`). Those in ``SHORT`` are made where they are
+missing or stale; all other shipped cases are long, are made on request, and are shown with the date and the hash
+of the code that made them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from restitution import datasets
+from restitution.cases import reading as case_files
+from restitution.cases.case import Case
+from restitution.errors import Defect, InputError, StoppedError
+from restitution.files import write_folder
+from restitution.impacts.bounces import Bounces, filmed
+from restitution.report.fig2.checks import Check, read_checks
+from restitution.report.fig2.point_lines import PointLine, draw_physics, lines, physics
+from restitution.report.fig2.scores import scores
+from restitution.runs.kept import KeptRun, ensure, own_runs, read_run
+from restitution.tables.writing import table_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+RECORD = "gondret2002_st152"
+PUBLISHED = "biegert2017_st152"
+MAIN = "gondret_st152_10"
+SHORT = ("gondret_st152_10_measured", MAIN, "gondret_st152_10_soft")
+"""What the figure shows: contact modes (a), (b), (c) at ten cells a diameter."""
+VERIFICATION = "benchmarks/sphere.json"
+"""Where a checkout keeps the solver's verification; what is read is the caller's to say."""
+
+
+@dataclass(frozen=True)
+class Fig2:
+    """The kept runs by case, scores, the records as filmed, and the solver's verification."""
+
+    runs: dict[str, KeptRun]
+    scores: pd.DataFrame
+    records: dict[str, Bounces]
+    checks: list[Check]
+    failed: dict[str, str] = field(default_factory=dict)
+    lines: list[PointLine] = field(default_factory=list)
+    """The point-particle model on the main record."""
+    own: list[str] = field(default_factory=list)
+    """Runs of cases that are not shipped."""
+
+
+def gather(
+    runs: str | Path,
+    verification: str | Path | None = None,
+    full: bool = False,
+    fresh: bool = False,
+    show: Callable[[str], None] | None = None,
+) -> Fig2:
+    """Read the kept runs, making those that are wanted: the short ones, with ``full`` all of them.
+
+    ``fresh`` repeats the wanted ones. A run that stops in error is named in ``failed`` and the report goes on.
+    """
+    runs, failed, checks = Path(runs), {}, _checks(verification)
+    cases = {name: case_files.read_case(name) for name in case_files.names()}
+    made = set(cases) if full else set(SHORT)
+    found = _kept(cases, runs, skip=made if fresh else ())
+    if show is not None and not found and not fresh:
+        show(f"no results are kept in {runs}: the runs of the figure are made now")
+    for name in sorted(made, key=lambda n: (n not in SHORT, n)):
+        if name in found and not found[name].stale:
+            continue
+        try:
+            found[name] = ensure(cases[name], runs, fresh, show)
+        except StoppedError as error:
+            failed[name] = str(error)
+            found.pop(name, None)
+    found = {name: found[name] for name in sorted(found, key=lambda n: (n not in SHORT, n not in cases, n))}
+    wanted = {run.case.record for run in found.values() if run.case.record is not None}
+    records = {}
+    for name in sorted(wanted | {RECORD, PUBLISHED}):
+        resource = datasets.resource(name)
+        if resource.table == "trajectory" and resource.conditions.sphere.e_dry is not None:
+            first = 0.0 if resource.kind == "simulated" else None  # its zero is the end of its stretched contact
+            records[name] = filmed(datasets.load_track(name), resource.conditions, first)
+    points = lines(RECORD)
+    own = [name for name in found if name not in cases]
+    return Fig2(found, scores(found, records, points), records, checks, failed, points, own)
+
+
+def _kept(cases: dict[str, Case], folder: Path, skip: Collection[str] = ()) -> dict[str, KeptRun]:
+    """All kept runs, of shipped cases and others; raises :class:`InputError` naming everything damaged."""
+    found, defects = {}, []
+    for name, case in cases.items():
+        try:
+            if name not in skip and (run := read_run(case, folder)) is not None:
+                found[name] = run
+        except InputError as error:
+            defects += error.defects
+    try:
+        found |= {run.case.name: run for run in own_runs(folder, cases)}
+    except InputError as error:
+        defects += error.defects
+    if defects:
+        raise InputError(*defects)
+    return found
+
+
+def _checks(given: str | Path | None) -> list[Check]:
+    """The solver's verification; none where no file is named."""
+    if given is None:
+        return []
+    path = Path(given)
+    if not path.is_file():
+        raise InputError(Defect("is no file", str(path)))
+    return read_checks(path)
+
+
+def write(
+    folder: str | Path,
+    runs: str | Path,
+    verification: str | Path | None = None,
+    full: bool = False,
+    fresh: bool = False,
+    show: Callable[[str], None] | None = None,
+) -> tuple[list[str], dict[str, str]]:
+    """Write the report into ``folder``; returns the names of its files, and what runs failed and why."""
+    import pandas as pd
+
+    from restitution.report.fig2 import page, plot
+
+    fig2 = gather(runs, verification, full, fresh, show)
+    figure, others = plot.draw(fig2), plot.draw_records(fig2)
+    flow = plot.draw_flow(fig2)
+    off = physics(RECORD)
+    forces = draw_physics(off)
+    impacts = [run.impacts for run in fig2.runs.values() if len(run.impacts)]
+    files: dict[str, str | bytes] = {
+        "figure.svg": figure.svg,
+        "figure.png": figure.png,
+        "scores.csv": table_text(fig2.scores, "%.5g"),
+        "impacts.csv": table_text(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
+        "physics.csv": table_text(off, "%.5g"),
+        "physics.png": forces.png,
+        "index.html": page.render(fig2, figure, others, flow, off, forces),
+    }
+    files |= {"records.png": others.png} if others is not None else {}
+    files |= {"flow.png": flow.png} if flow is not None else {}
+    write_folder(folder, files)
+    return list(files), fig2.failed

@@ -1,0 +1,215 @@
+"""The resolved solver on a case: the only place where ``restitution`` meets ``lbm``.
+
+A case becomes lattice units, the closure laws become the plain callables that :mod:`lbm.spheres.film` and
+:mod:`lbm.spheres.contact` take, and what the solver recorded comes back in SI, time counted from the first
+contact.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import lbm
+from lbm.fluid import cache
+from lbm.observers import DivergenceGuard, FieldOutput
+from restitution.cases.case import Case
+from restitution.errors import Defect, InputError, StoppedError
+from restitution.runs.record import SolverContact
+from restitution.runs.setup import fall_time, set_up
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_LONGEST = 4.0
+"""A run without contact is given up after this many times the fall at the reference speed."""
+_LONGEST_RUN = 100
+_NEAR_D = 0.5
+
+
+class ResolvedRun:
+    """A case on the lattice; :meth:`advance` until :attr:`finished`, and read in between."""
+
+    def __init__(self, case: Case, file: str = ""):
+        if case.numerics is None:
+            raise InputError(
+                Defect("is missing: the resolved solver needs it", file or case.name, None, "numerics")
+            )
+        self.case = case
+        self.warnings: list[str] = []
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", lbm.OutsideRangeWarning)
+            try:
+                self.setup = set_up(case)
+                self.simulation, self.spheres = self.setup.build()
+            except lbm.InputError as error:
+                raise InputError(Defect(str(error), file or case.name, None, "numerics")) from None
+        self.flow = self.setup.flow
+        self.warnings += [str(w.message) for w in caught]
+        self.guard = DivergenceGuard()
+        self._unguarded = 0
+
+    @property
+    def step_s(self) -> float:
+        """One time step in s."""
+        return self.flow.scales.step_s
+
+    @property
+    def cells(self) -> int:
+        """Cells of the box."""
+        return int(np.prod(self.simulation.shape))
+
+    @property
+    def time_s(self) -> float:
+        """Time since the release."""
+        return self.simulation.steps * self.step_s
+
+    @property
+    def gap_d(self) -> float:
+        """Gap now, in diameters."""
+        return float(self.spheres.centres[0, 2] - self.spheres.radii[0]) / self.flow.length
+
+    @property
+    def contacts(self) -> list[SolverContact]:
+        """The contacts so far."""
+        speed = self.flow.scales.unit("velocity")
+        return [
+            SolverContact(
+                time_s=float(i.step) * self.step_s,
+                speed_in_m_s=float(i.speed_in * speed),
+                speed_out_m_s=float(i.speed_out * speed),
+            )
+            for i in self.spheres.impacts
+        ]
+
+    @property
+    def expected_s(self) -> float:
+        """About how long the run is going to be, in s since the release."""
+        span, found = self.case.run, self.contacts
+        if span.after_contact is None:
+            return span.duration or self._longest
+        first = found[0].time_s if found else fall_time(self.case)
+        return min(first + span.after_contact, span.duration or math.inf)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the span of the case is over."""
+        span, found, now = self.case.run, self.contacts, self.time_s
+        if span.duration is not None and now >= span.duration:
+            return True
+        if self.case.contact is None and self.gap_d * self.case.sphere.diameter <= (self.case.floor or 0.0):
+            return True
+        if span.after_contact is not None and found:
+            return now >= found[0].time_s + span.after_contact
+        return now >= self._longest
+
+    def _left(self) -> int:
+        """Steps to the end of the span, as far as it is known by now; at least one."""
+        span, found = self.case.run, self.contacts
+        ends = [span.duration, found[0].time_s + span.after_contact if found and span.after_contact else None]
+        end = min((e for e in ends if e is not None), default=math.inf)
+        return max(1, math.ceil(min((end - self.time_s) / self.step_s, _LONGEST_RUN)))
+
+    @property
+    def _longest(self) -> float:
+        return _LONGEST * fall_time(self.case)
+
+    def advance(self, observers: tuple = ()) -> None:
+        """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed.
+
+        Raises :class:`StoppedError` for a run that diverges or cannot write.
+        """
+        steps = _LONGEST_RUN
+        if not math.isfinite(self.gap_d):
+            self.check()  # names the cell, if the flow is to blame
+            raise StoppedError(f"diverged by step {self.simulation.steps}: the sphere is nowhere")
+        if not self.spheres.impacts:
+            least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
+            speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
+            steps = int(min(max(0.5 * self.gap_d * self.flow.length / speed, 1), steps))
+        steps = min(steps, self._left())
+        self._unguarded += steps
+        due = self._unguarded >= _LONGEST_RUN
+        with _in_our_words():
+            self.simulation.run(steps, observers, guard=self.guard if due else None)
+        self._unguarded = 0 if due else self._unguarded
+
+    def check(self) -> None:
+        """Raise :class:`StoppedError` if the flow has diverged."""
+        with _in_our_words():
+            self.guard(self.simulation)
+
+    def save(self, path: Path) -> None:
+        """Write a checkpoint; raises :class:`StoppedError` where that cannot be."""
+        with _in_our_words():
+            self.simulation.save(path)
+
+    def restore(self, path: Path) -> None:
+        """Continue from a checkpoint; raises :class:`InputError` for one that does not fit."""
+        with _in_our_words():
+            self.simulation.restore(path)
+
+    def snapshots(self, folder: Path) -> FieldOutput:
+        """An observer that writes the flow for ParaView."""
+        interval = self.case.run.snapshot_interval
+        steps = _LONGEST_RUN if interval is None else max(1, round(interval / self.step_s))
+        return FieldOutput(steps, folder, self.case.name, self.flow.scales)
+
+    def motion(self) -> pd.DataFrame:
+        """Every step so far in SI: ``time_s``, ``gap_m``, position, velocity, spin, force and torque of the fluid.
+
+        Time is counted from the first contact, or from the release where there is none; velocities are positive
+        away from the wall (z).
+        """
+        import pandas as pd
+
+        track, si = self.spheres.track(0), self.flow.scales.si
+        first = self.spheres.impacts[0].step if self.spheres.impacts else 0.0
+        kinds = {
+            "gap": ("gap_m", "length"), "v": ("v{}_m_s", "velocity"), "w": ("spin_{}_1_s", "frequency"),
+            "f": ("force_{}_N", "force"), "t": ("torque_{}_N_m", "torque"),
+        }  # fmt: skip
+        table = {"time_s": (track["step"] - first) * self.step_s}
+        table["gap_m"] = si(track["z"] - self.spheres.radii[0], "length")
+        table |= {f"{axis}_m": si(track[axis], "length") for axis in "xyz"}
+        for letter in "vwft":
+            name, quantity = kinds[letter]
+            table |= {name.format(axis): si(track[letter + axis], quantity) for axis in "xyz"}
+        return pd.DataFrame(table)
+
+    def vorticity(self) -> np.ndarray:
+        """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz).
+
+        By central differences; inside the sphere the velocity is the sphere's own.
+        """
+        u = self.simulation.velocity
+        middle = self.simulation.shape[1] // 2
+        along, up = u[0, :, middle, :].astype(float), u[2, :, middle, :].astype(float)
+        centre, r = self.spheres.centres[0], self.spheres.radii[0]
+        x, z = (np.arange(n) + 0.5 for n in along.shape)
+        inside = (x[:, None] - centre[0]) ** 2 + (z[None, :] - centre[2]) ** 2 < r**2
+        along[inside], up[inside] = self.spheres.velocities[0, [0, 2]]
+        curl = np.gradient(along, axis=1) - np.gradient(up, axis=0)
+        return self.flow.scales.si(curl, "frequency")
+
+
+def kernel_folder() -> Path:
+    """Where the compiled kernels of this version of the solver are kept."""
+    return cache.directory()
+
+
+@contextmanager
+def _in_our_words() -> Iterator[None]:
+    """The solver's errors as this package's."""
+    try:
+        yield
+    except lbm.InputError as error:
+        raise InputError(str(error)) from None
+    except (lbm.DivergenceError, lbm.OutputError) as error:
+        raise StoppedError(str(error)) from None
