@@ -24,8 +24,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from restitution.files import write_whole
-from restitution.runs import physics
-from restitution.runs.program import program_hash
+from restitution.runs.validity import physics
+from restitution.runs.validity.program import program_hash
 
 ROOT = Path(__file__).parent.parent
 KEPT = Path(__file__).parent / "probes.json"

@@ -26,7 +26,7 @@ from restitution import datasets
 from restitution.files import write_whole
 from restitution.laws.brenner_1961 import Brenner1961
 from restitution.report.fig2.checks import Check, read_checks, text_of
-from restitution.runs import physics
+from restitution.runs.validity import physics
 
 ARRAYS = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292}
 """K over the solid fraction: Zick & Homsy, J. Fluid Mech. 115 (1982) 13, simple cubic array."""

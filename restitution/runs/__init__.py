@@ -6,9 +6,7 @@ resolved), :mod:`~restitution.runs.simulate` (from a case to its files), :mod:`~
 :mod:`~restitution.runs.filmed` (tables), :mod:`~restitution.runs.record` (``run.json``);
 :mod:`~restitution.runs.progress` and :mod:`~restitution.runs.flow_pictures` look on.
 
-Whether a kept run still holds: :mod:`~restitution.runs.kept`, by what it was told (:mod:`~restitution.runs.told`)
-and what the program computes (:mod:`~restitution.runs.physics`); :mod:`~restitution.runs.program` is a shortcut,
-:mod:`~restitution.runs.key` is for checkpoints.
+Whether a kept run (:mod:`~restitution.runs.kept`) still holds is the question of :mod:`restitution.runs.validity`.
 
 :mod:`~restitution.runs.point_particle` is the same case as a point particle.
 """

@@ -16,13 +16,13 @@ from pydantic import ValidationError
 from restitution import datasets
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError
-from restitution.runs import physics
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.flow_pictures import FlowFrames
-from restitution.runs.program import program_hash
 from restitution.runs.record import RESOLVED, RunRecord, read_record
 from restitution.runs.simulate import KEPT, can_resume, simulate
-from restitution.runs.told import departures, told
+from restitution.runs.validity import physics
+from restitution.runs.validity.program import program_hash
+from restitution.runs.validity.told import departures, told
 from restitution.tables.reading import read_table
 
 if TYPE_CHECKING:

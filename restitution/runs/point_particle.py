@@ -41,8 +41,8 @@ from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.measured import measured_restitution
-from restitution.runs.program import program_hash
 from restitution.runs.record import POINT_PARTICLE, RunRecord, SolverContact
+from restitution.runs.validity.program import program_hash
 from restitution.stokes import StokesNumber
 from restitution.tables.writing import table_text
 

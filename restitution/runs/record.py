@@ -32,9 +32,9 @@ class SolverContact(BaseModel):
 class RunRecord(BaseModel):
     """The content of ``run.json``.
 
-    ``physics`` is the version that the program agreed with when the run was made, None where it departed
-    (:mod:`restitution.runs.physics`), ``code_hash`` the text of that program; ``told`` is what the solver was told
-    (:mod:`restitution.runs.told`), ``filmed`` what else the table of impacts was taken with.
+    ``physics`` is the version that the program agreed with when the run was made, None where it departed,
+    ``code_hash`` the text of that program, ``told`` what the solver was told (:mod:`restitution.runs.validity`);
+    ``filmed`` is what the table of impacts was taken with beside the trajectory.
     """
 
     model: str = RESOLVED

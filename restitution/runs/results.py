@@ -5,13 +5,13 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from restitution.runs import physics
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.flow_pictures import FlowFrames
-from restitution.runs.program import program_hash
 from restitution.runs.record import FILE, RunRecord, SolverContact
 from restitution.runs.resolved import ResolvedRun
-from restitution.runs.told import told
+from restitution.runs.validity import physics
+from restitution.runs.validity.program import program_hash
+from restitution.runs.validity.told import told
 from restitution.tables.writing import table_text
 
 if TYPE_CHECKING:

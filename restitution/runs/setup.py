@@ -1,7 +1,7 @@
 """A case as the lattice solver is told it: scales, box, rates, sphere, drive, film and contact in lattice units.
 
 Nothing of size is allocated here, so that what a kept run was told can be compared with what its case says now
-(:mod:`restitution.runs.told`) in a millisecond or two.
+(:mod:`restitution.runs.validity.told`) in a millisecond or two.
 """
 
 from __future__ import annotations

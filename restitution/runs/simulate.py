@@ -28,12 +28,12 @@ import numpy as np
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder, write_whole
-from restitution.runs import physics
 from restitution.runs.flow_pictures import FlowFrames
-from restitution.runs.key import checkpoint_key
 from restitution.runs.progress import RunProgress
 from restitution.runs.resolved import ResolvedRun
 from restitution.runs.results import results, trajectory_of
+from restitution.runs.validity import physics
+from restitution.runs.validity.key import checkpoint_key
 from restitution.tables.writing import table_text
 
 SECONDS_PER_CHECKPOINT = 30.0

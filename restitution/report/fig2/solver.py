@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from restitution.report.page import percent
-from restitution.runs import physics
+from restitution.runs.validity import physics
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,11 +14,11 @@ from restitution.commands.simulate import show_result
 from restitution.report.fig1 import content as fig1
 from restitution.report.fig2 import content as fig2
 from restitution.report.fig2 import point_lines
-from restitution.runs import physics
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.flow_pictures import FlowFrames, Frame
-from restitution.runs.program import program_hash
-from restitution.runs.told import told
+from restitution.runs.validity import physics
+from restitution.runs.validity.program import program_hash
+from restitution.runs.validity.told import told
 from restitution.tables.writing import table_text
 
 FALL = 8.146

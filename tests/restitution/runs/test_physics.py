@@ -15,11 +15,11 @@ from restitution import cases
 from restitution.cases import Case, FilmModel
 from restitution.laws.legendre import Legendre2005
 from restitution.runs import kept as kept_runs
-from restitution.runs import physics, program
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.resolved import ResolvedRun
 from restitution.runs.simulate import simulate
-from restitution.runs.told import departures, told
+from restitution.runs.validity import physics, program
+from restitution.runs.validity.told import departures, told
 
 ROOT = Path(restitution.__file__).parents[1]
 KEPT = ROOT / "reports" / "runs"

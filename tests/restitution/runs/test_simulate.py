@@ -13,8 +13,8 @@ from restitution.cli import main
 from restitution.errors import InputError
 from restitution.runs import closures, resolved, simulate
 from restitution.runs.kept import ensure, read_run
-from restitution.runs.key import checkpoint_key
 from restitution.runs.setup import film_forces
+from restitution.runs.validity.key import checkpoint_key
 from restitution.tables import check_table
 
 TINY = """
@@ -262,5 +262,5 @@ def test_a_checkpoint_belongs_to_what_the_contact_takes():
 
 def test_a_checkpoint_belongs_to_the_text_of_the_program(tmp_path, monkeypatch):
     before = checkpoint_key(tiny(tmp_path))
-    monkeypatch.setattr("restitution.runs.key.program_hash", lambda: "0" * 12)
+    monkeypatch.setattr("restitution.runs.validity.key.program_hash", lambda: "0" * 12)
     assert checkpoint_key(tiny(tmp_path)) != before

@@ -7,8 +7,8 @@ import json
 
 from restitution.cases.case import Case
 from restitution.runs.filmed import filmed
-from restitution.runs.program import program_hash
-from restitution.runs.told import told
+from restitution.runs.validity.program import program_hash
+from restitution.runs.validity.told import told
 
 _FOR_READERS = {"title", "note", "prediction"}
 _DIGITS = 12
