@@ -14,7 +14,7 @@ class Check(BaseModel):
     """One figure beside its reference.
 
     ``error`` is relative, or absolute where the reference is 0; ``target`` is the magnitude that was aimed at;
-    ``physics`` the version of the program that gave it, None where not known: :mod:`restitution.runs.validity.physics`.
+    ``physics`` is the version of the program that gave it (:mod:`restitution.runs.validity`), None where not known.
     """
 
     group: str = ""
