@@ -106,7 +106,7 @@ def _read_csv(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
     if len(rows) > 1 and _is_axes(rows[1][1]):
         names = rows[0][1][::2]
         rows = rows[2:]
-    found: dict[str, list] = {"source": [], axes[0]: [], axes[1]: []}
+    columns: dict[str, list] = {"source": [], axes[0]: [], axes[1]: []}
     for line, cells in rows:
         for k, name in enumerate(names):
             pair = cells[2 * k : 2 * k + 2]
@@ -115,10 +115,10 @@ def _read_csv(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
             for cell in pair:
                 if not NUMBER.fullmatch(cell):
                     raise InputError(Defect("is not a number", str(path), line, name, cell))
-            found["source"].append(name)
-            found[axes[0]].append(float(pair[0]))
-            found[axes[1]].append(float(pair[1]))
-    return pd.DataFrame(found)
+            columns["source"].append(name)
+            columns[axes[0]].append(float(pair[0]))
+            columns[axes[1]].append(float(pair[1]))
+    return pd.DataFrame(columns)
 
 
 def _read_project(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:

@@ -49,7 +49,7 @@ def first_guess(likelihood: Likelihood) -> NDArray:
         starts += [low + part * (high - low) for part in (0.02, 0.1, 0.3, 0.6)]
     starts = [np.clip(s, low + 1e-9, high - 1e-9) for s in starts]
     starts.sort(key=lambda s: float(np.sum(misfit(s) ** 2)))
-    best = min((least_squares(misfit, s, bounds=(low, high)) for s in starts[:2]), key=lambda found: found.cost)
+    best = min((least_squares(misfit, s, bounds=(low, high)) for s in starts[:2]), key=lambda fit: fit.cost)
     values[mean] = [parameters[j].outward(v) for j, v in zip(mean, best.x, strict=True)]
     left = float(np.sqrt(np.mean((o.e - likelihood.moments(values)[0])[seen] ** 2)))
     for j, p in enumerate(parameters):

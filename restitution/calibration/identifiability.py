@@ -41,17 +41,17 @@ def check_data(likelihood: Likelihood) -> None:
         raise InputError(Defect(rule, file))
 
 
-def check_bounds(found: Maximum) -> None:
+def check_bounds(best: Maximum) -> None:
     """Refuse an estimate stuck on a bound; e_dry may lie at 1, and a prior may hold a parameter anywhere."""
-    for j, p in enumerate(found.parameters):
-        side = found.at_bound(j) if p.mean else None
+    for j, p in enumerate(best.parameters):
+        side = best.at_bound(j) if p.mean else None
         if side and not p.name.startswith("e_dry") and not isinstance(p.prior, Normal):
             low, high = p.bounds
             rule = (
                 f"is stuck on its {side} bound [{low:g}, {high:g}]: the data ask for more than the law allows; "
                 f"widen it (--bounds {p.name}=LOW:HIGH), fix it, or fit another law"
             )
-            raise InputError(Defect(rule, None, None, p.name, f"{found.values[j]:.4g}"))
+            raise InputError(Defect(rule, None, None, p.name, f"{best.values[j]:.4g}"))
 
 
 def check_flat(likelihood: Likelihood, values: NDArray) -> None:

@@ -38,12 +38,14 @@ _SIGMAS = ("e_eff_sigma", "stokes_sigma", "e_dry_sigma", "impact_speed_sigma_m_s
 class TableCheck:
     """The rules on one table; ``defects`` gathers what breaks them, no cell twice.
 
-    ``rows`` are the lines of the file; ``found`` defects of the table's form, the cells they name being empty.
+    ``rows`` are the lines of the file; in ``form_defects``, those of the table's form, the named cells are empty.
     """
 
-    def __init__(self, table: pd.DataFrame, how: Reading, file: str, rows: Sequence[int], found: Iterable[Defect]):
+    def __init__(
+        self, table: pd.DataFrame, how: Reading, file: str, rows: Sequence[int], form_defects: Iterable[Defect]
+    ):
         self.table, self.how, self.file, self.rows = table, how, file, rows
-        self.defects = list(found)
+        self.defects = list(form_defects)
         self._named = {(d.row, d.field) for d in self.defects}
         # Where a column is misnamed, its empty cells are no further defects.
         self._complete = not any(d.row == 1 for d in self.defects)

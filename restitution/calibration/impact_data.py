@@ -72,11 +72,11 @@ def _read_one(path: str, how: Reading) -> Observations:
 def _from_export(path: str, how: Reading, digest: str) -> Observations:
     """The points of a digitised plot, each data set a source."""
     _known_columns(dict(zip(how.axes, ("--x", "--y"), strict=True)))
-    found = from_table(read_export(path, how.axes), replace(how, columns={}), path, digest)
+    points = from_table(read_export(path, how.axes), replace(how, columns={}), path, digest)
     if not path.endswith(".json"):
-        return found
+        return points
     note = f"{path}: errors are those of a click, {PIXEL:g} pixel; those of the measurement are in the scatter"
-    return replace(found, notes=(*found.notes, note))
+    return replace(points, notes=(*points.notes, note))
 
 
 def _known_columns(given: Mapping[str, str]) -> None:

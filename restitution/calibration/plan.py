@@ -63,9 +63,9 @@ class Plan:
             parameters.append(Parameter(SCATTER, 0.03, (0.0, 1.0), "1", "even", deviation, False))
         if self.offsets if self.offsets is not None else sources > 1:
             parameters.append(Parameter(OFFSET, 0.03, (0.0, 1.0), "1", "even", deviation, False))
-        found = Likelihood(self.model, observations, tuple(parameters), fixed, separate, self.robust)
-        check_data(found)
-        return found
+        likelihood = Likelihood(self.model, observations, tuple(parameters), fixed, separate, self.robust)
+        check_data(likelihood)
+        return likelihood
 
     def _known_names(self) -> None:
         names = [p.name for p in self.model.parameters]
@@ -125,7 +125,7 @@ def _by_level(
     if label is None:
         return [p]
     levels, group = o.groups(label)
-    found = []
+    parameters = []
     for i, level in enumerate(levels):
         own = replace(p, name=f"{p.name}[{level}]")
         if e_dry_sigma is not None and isinstance(p.prior, Flat):
@@ -135,5 +135,5 @@ def _by_level(
                 raise InputError(Defect(rule, field="e_dry"))
             if stated:
                 own = replace(own, start=min(stated)[0], prior=Normal(*map(float, min(stated))))
-        found.append(own)
-    return found
+        parameters.append(own)
+    return parameters

@@ -28,8 +28,12 @@ from restitution.calibration.plan import Plan
 from restitution.errors import ConventionError, InputError
 from restitution.showing import Showing, Table, counted
 
-LEAST_DIFFERENCE, STANDARD_ERRORS = 4.0, 2.0
+LEAST_DIFFERENCE = 4.0
+"""Difference in elpd below which two laws are not separated, whatever its error."""
+STANDARD_ERRORS = 2.0
+"""In standard errors of the difference, the same."""
 REPLICATES = 1000
+"""Data drawn for the predictive check."""
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ QUANTITIES = {"gap_m": "trajectory", "velocity_m_s": "settling"}
 
 def is_track(header: list[str], how: Reading) -> bool:
     """Whether a table is a track: it has the time, and either the gap or the velocity."""
-    found = {how.columns.get(name, name) for name in ("time_s", *QUANTITIES)} & set(header)
-    return len(found) == 2 and how.columns.get("time_s", "time_s") in found
+    names = {how.columns.get(name, name) for name in ("time_s", *QUANTITIES)} & set(header)
+    return len(names) == 2 and how.columns.get("time_s", "time_s") in names
 
 
 def from_track_file(path: str, how: Reading, digest: str) -> Observations:
@@ -51,15 +51,15 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
             Defect("a track gives the far, contact or window speed", name, None, "--speed", str(how.speed))
         )
     stokes = how.stokes or "st"
-    found = find_impacts(track, conditions, how.speed, stokes, Path(name).stem)
-    if not found.rows:
+    impacts = find_impacts(track, conditions, how.speed, stokes, Path(name).stem)
+    if not impacts.rows:
         raise InputError(Defect("no impact is resolved in this track", name))
     o = Observations.from_impacts(
-        found.rows,
+        impacts.rows,
         conditions,
-        places=tuple((f"{name}, impact", int(row["impact"])) for row in found.rows),
+        places=tuple((f"{name}, impact", int(row["impact"])) for row in impacts.rows),
         files={name: digest},
-        notes=tuple(f"{name}: {note}" for note in found.notes),
+        notes=tuple(f"{name}: {note}" for note in impacts.notes),
     )
     return check_physical(o, how)
 

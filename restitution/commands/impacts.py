@@ -74,14 +74,14 @@ def run(args: argparse.Namespace) -> None:
     if args.out is not None:
         _check_output(args)
     track, conditions, kind = _read(args)
-    found = find_impacts(
+    impacts = find_impacts(
         track, conditions, args.speed, args.stokes, Path(args.track).stem, kind, args.frames, args.film
     )
-    table = found.table()
+    table = impacts.table()
     if args.out:
         write_whole(args.out, table_text(table))
-    _show(table, found.sigma, "m" if track.quantity == "gap" else "m/s")
-    for note in found.notes:
+    _show(table, impacts.sigma, "m" if track.quantity == "gap" else "m/s")
+    for note in impacts.notes:
         show(f"note: {note}")
 
 
