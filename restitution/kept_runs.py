@@ -125,9 +125,9 @@ def read_about(place: Path) -> About:
     try:
         about = About.model_validate(json.loads(path.read_bytes()))
     except (ValidationError, ValueError):
-        raise InputError(Defect(f"is damaged: {_MEND}", str(path))) from None
+        raise InputError(Defect(f"is damaged: {_MEND}", file=str(path))) from None
     if not about.finished:
-        raise InputError(Defect(f"is of a run that did not finish: {_MEND}", str(path)))
+        raise InputError(Defect(f"is of a run that did not finish: {_MEND}", file=str(path)))
     return about
 
 
@@ -158,7 +158,7 @@ def _result(place: Path, case: Case, about: About, stale: bool) -> KeptRun:
         except InputError as error:
             defects += error.defects
     if defects:
-        raise InputError(*defects, Defect(f"has damaged tables: {_MEND}", str(place)))
+        raise InputError(*defects, Defect(f"has damaged tables: {_MEND}", file=str(place)))
     flow = FlowFrames()
     flow.read(place / "flow.npz")
     return KeptRun(case, about, **tables, flow=flow, stale=stale)
@@ -176,7 +176,9 @@ def _check_end(path: Path, time: np.ndarray, about: About) -> None:
     """A table that was cut is well formed; it ends before the run did."""
     end = time[0] + about.steps * about.step_s
     if len(time) > 1 and time[-1] < end - 2 * (time[1] - time[0]):
-        raise InputError(Defect(f"ends before the run, which went on to {end:.4g} s", str(path), len(time) + 1))
+        raise InputError(
+            Defect(f"ends before the run, which went on to {end:.4g} s", file=str(path), row=len(time) + 1)
+        )
 
 
 def ensure(case: Case, folder: Path, fresh: bool = False, show: Callable[[str], None] | None = None) -> KeptRun:
@@ -191,5 +193,5 @@ def ensure(case: Case, folder: Path, fresh: bool = False, show: Callable[[str], 
     simulate(case, place, resume=can_resume(place, case) and not fresh, every_step=False, show=show)
     made = read_run(case, folder)
     if made is None:
-        raise InputError(Defect(f"has no result after its run; expected {', '.join(KEPT)}", str(place)))
+        raise InputError(Defect(f"has no result after its run; expected {', '.join(KEPT)}", file=str(place)))
     return made

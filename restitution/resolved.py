@@ -57,7 +57,7 @@ class ResolvedRun:
     def __init__(self, case: Case, file: str = ""):
         if case.numerics is None:
             raise InputError(
-                Defect("is missing: the resolved solver needs it", file or case.name, None, "numerics")
+                Defect("is missing: the resolved solver needs it", file=file or case.name, field="numerics")
             )
         self.case = case
         self.warnings: list[str] = []
@@ -67,7 +67,7 @@ class ResolvedRun:
                 self.flow = _scales(case)
                 self.simulation, self.spheres = _set_up(case, self.flow)
             except lbm.InputError as error:
-                raise InputError(Defect(str(error), file or case.name, None, "numerics")) from None
+                raise InputError(Defect(str(error), file=file or case.name, field="numerics")) from None
         self.warnings += [str(w.message) for w in caught]
         self.guard = DivergenceGuard()
         self._unguarded = 0

@@ -23,12 +23,11 @@ def first_guess(likelihood: Likelihood) -> NDArray:
         names = ", ".join(f"{p.name} = {p.start:g}" for p in parameters if p.mean)
         f = likelihood.moments(values)[0]
         row = int(np.argmin(np.isfinite(f)))
-        where = o.places[row] if o.places else (None, None)
         rule = (
             f"the law has no finite value here at the start ({names}): give a start or bounds where it has "
             "(--bounds NAME=LOW:HIGH starts in the middle)"
         )
-        raise InputError(Defect(rule, *where, "stokes", f"{o.St[row]:g}"))
+        raise InputError(Defect(rule, **o.place(row), field="stokes", value=f"{o.St[row]:g}"))
     if not len(mean):
         return values
 

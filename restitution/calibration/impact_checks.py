@@ -55,7 +55,7 @@ class TableCheck:
         own = None if name is None else self.how.columns.get(name, name)
         if row is None or (row, own) not in self._named:
             self._named.add((row, own))
-            self.defects.append(Defect(rule, self.file, row, own, value))
+            self.defects.append(Defect(rule, file=self.file, row=row, field=own, value=value))
 
     def _add_all(self, rule: str, where: np.ndarray, name: str, values: Any = None) -> None:
         for i in np.flatnonzero(where):
@@ -69,7 +69,9 @@ class TableCheck:
         first, at = stated.iloc[0], stated.index[0]
         if given is not None and given != first:
             rule = f"the file states another: {first!r}"
-            self.defects.append(Defect(rule, self.file, int(self.rows[at]), option, str(given)))
+            self.defects.append(
+                Defect(rule, file=self.file, row=int(self.rows[at]), field=option, value=str(given))
+            )
         for i, value in stated.items():
             if value != first:
                 rule = f"differs from {first!r} in row {self.rows[at]}: one file has one definition; split it"
@@ -124,7 +126,7 @@ class TableCheck:
 def check_physical(o: Observations, how: Reading) -> Observations:
     """The same impacts of one's own tracks; refuses those whose e_eff is not physical, unless that is waived."""
     outside = np.flatnonzero(_outside(o.e)) if not how.unphysical else ()
-    defects = [Defect(_UNPHYSICAL, *o.places[i], "e_eff", f"{o.e[i]:g}") for i in outside]
+    defects = [Defect(_UNPHYSICAL, **o.place(i), field="e_eff", value=f"{o.e[i]:g}") for i in outside]
     if defects:
         raise InputError(*defects)
     return o

@@ -44,7 +44,7 @@ def read(paths: str | Path | Sequence[str | Path], how: Reading | None = None, *
         for name, digest in part.files.items():
             if digest in seen:
                 defects.append(
-                    Defect(f"has the same content as {seen[digest]}: its impacts would count twice", name)
+                    Defect(f"has the same content as {seen[digest]}: its impacts would count twice", file=name)
                 )
             seen[digest] = name
     if defects:
@@ -59,7 +59,7 @@ def _read_one(path: str, how: Reading) -> Observations:
             digest = resource.hash.removeprefix("sha256:")
             conditions = how.conditions or resource.conditions
             return from_track(datasets.load_track(path), conditions, how, path, digest)
-        raise InputError(Defect("does not exist, and no shipped record has this name", path))
+        raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
     if is_export(path):
         return _from_export(path, how, _digest(path))
     if is_track(read_header(path), how):
@@ -83,7 +83,7 @@ def _known_columns(given: Mapping[str, str]) -> None:
     """Refuse names that are no columns of the schema, each given by the option that is its value."""
     known = read_schema(SCHEMA).columns
     rule = f"is not a column that a fit uses; known: {', '.join(known)}"
-    defects = [Defect(rule, None, None, option, name) for name, option in given.items() if name not in known]
+    defects = [Defect(rule, field=option, value=name) for name, option in given.items() if name not in known]
     if defects:
         raise InputError(*defects)
 

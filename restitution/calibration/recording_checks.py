@@ -30,16 +30,20 @@ def check(name: str, track: Track, contacts: Contacts, conditions: Conditions) -
     excess_weight(conditions)
     d, terminal = conditions.sphere.diameter, terminal_speed(conditions)
     if track.quantity != "gap":
-        raise InputError(Defect("has velocities; a fit to trajectories needs gaps", name, None, "velocity_m_s"))
+        raise InputError(
+            Defect("has velocities; a fit to trajectories needs gaps", file=name, field="velocity_m_s")
+        )
     if conditions.sphere.e_dry is None:
-        raise InputError(Defect("must be stated: the rebound needs a dry restitution", name, None, "sphere.e_dry"))
+        raise InputError(
+            Defect("must be stated: the rebound needs a dry restitution", file=name, field="sphere.e_dry")
+        )
     if len(track.time_s) < LEAST_FRAMES:
         rule = f"has {len(track.time_s)} frames; a trajectory needs at least {LEAST_FRAMES}"
-        raise InputError(Defect(rule, name))
+        raise InputError(Defect(rule, file=name))
     if expected_reynolds(conditions, 0.0) > GREATEST_RE:
         St = StokesNumber.from_speed(terminal, conditions).value
         rule = f"makes the sphere fall at {terminal:.2g} m/s, St = {St:.2g}: in millimetres?"
-        raise InputError(Defect(rule, name, None, "sphere.diameter", f"{d:g}"))
+        raise InputError(Defect(rule, file=name, field="sphere.diameter", value=f"{d:g}"))
     speeds = np.abs(np.diff(track.value) / np.diff(track.time_s))
     fastest = float(np.quantile(speeds, 0.95))
     if not SPEEDS[0] * terminal < fastest < SPEEDS[1] * terminal:
@@ -49,22 +53,24 @@ def check(name: str, track: Track, contacts: Contacts, conditions: Conditions) -
             f"moves at {fastest:.3g} m/s, St = {St:.2g}, where this sphere falls at {terminal:.2g} m/s at most, "
             f"St = {expected:.2g}: are gap and diameter in metres, time in seconds?"
         )
-        raise InputError(Defect(rule, name, row, "gap_m", f"{track.value[row - 2]:g}"))
+        raise InputError(Defect(rule, file=name, row=row, field="gap_m", value=f"{track.value[row - 2]:g}"))
     if (contacts.level or 0.0) < -CENTRE_D * d:
         rule = f"comes to rest {-contacts.level / d:.2g} d below the wall: is the gap zero where they touch?"
-        raise InputError(Defect(rule, name, None, "gap_m", f"{contacts.level:g}"))
+        raise InputError(Defect(rule, file=name, field="gap_m", value=f"{contacts.level:g}"))
     if track.value[0] < -max(DETECTION * track.sigma, BELOW_D * d):
-        raise InputError(Defect("starts below the wall", name, 2, "gap_m", f"{track.value[0]:g}"))
+        raise InputError(
+            Defect("starts below the wall", file=name, row=2, field="gap_m", value=f"{track.value[0]:g}")
+        )
     if not _rises(track, contacts, d):
         rule = f"has no bounce that rises by {LEAST_RISE_D:g} d: nothing to fit (is all in m, kg, s?)"
-        raise InputError(Defect(rule, name))
+        raise InputError(Defect(rule, file=name))
     lowest = int(np.argmin(track.value))
     if track.value[lowest] > CENTRE_D * d:
         rule = (
             f"is the lowest of the record, {track.value[lowest] / d:.2g} d above the wall: is it the height of "
             "the centre? The gap is that of the lowest point, less by d/2"
         )
-        raise InputError(Defect(rule, name, lowest + 2, "gap_m", f"{track.value[lowest]:g}"))
+        raise InputError(Defect(rule, file=name, row=lowest + 2, field="gap_m", value=f"{track.value[lowest]:g}"))
 
 
 def begins_rising(track: Track) -> bool:

@@ -130,10 +130,10 @@ def read_recording(path: str, how: Reading) -> Recording:
         track, conditions = track_of(path, how)
         return recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())
     if path not in datasets.names():
-        raise InputError(Defect("does not exist, and no shipped record has this name", path))
+        raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
     r = datasets.resource(path)
     if r.table != "trajectory":
-        raise InputError(Defect(f"is a {r.table} table; a trajectory of time and gap is needed", path))
+        raise InputError(Defect(f"is a {r.table} table; a trajectory of time and gap is needed", file=path))
     track, error = datasets.load_track(path), r.digitisation_error
     record = recording(
         path, track, how.conditions or r.conditions, r.hash.removeprefix("sha256:"), r.quoted.get("release_gap_m"),
@@ -157,7 +157,7 @@ def _check_header(path: str, how: Reading) -> None:
         own = how.columns.get(name, name)
         if own not in header:
             rule = f"is missing: a trajectory has time and gap; the header names {', '.join(header)}"
-            raise InputError(Defect(rule, path, 1, own))
+            raise InputError(Defect(rule, file=path, row=1, field=own))
 
 
 def recording(

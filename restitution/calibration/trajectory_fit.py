@@ -63,7 +63,7 @@ def observations(trajectories: Sequence[WholeTrajectory], how: Reading) -> Obser
     rows = [row for t in trajectories for row in t.rows(how.stokes or "st")]
     if not any(row["outcome"] == "rebound" for row in rows):
         rule = "no bounce leaves the film, 0.1 d: nothing to fit a law to"
-        raise InputError(*(Defect(rule, t.recording.name) for t in trajectories))
+        raise InputError(*(Defect(rule, file=t.recording.name) for t in trajectories))
     records = {t.recording.name: t.recording for t in trajectories}
     o = Observations.from_impacts(
         rows,

@@ -160,7 +160,7 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
         flights = expand_about(lambda x: integrate(r, x, wake), centre, steps, len(centre), before)
         if flights.flights < len(centre):  # a last bounce so low that the model has none, or not in all of the map
             if flights.flights < 2:
-                raise InputError(Defect("the model does not bounce where the record does", r.name))
+                raise InputError(Defect("the model does not bounce where the record does", file=r.name))
             centre, steps, eta = centre[: flights.flights], steps[: flights.flights], None
             continue
         likelihood = RecordLikelihood(r, flights, noise, np.zeros(0))
@@ -181,7 +181,7 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
             own = likelihood.prior[1] * np.sqrt(np.diag(m.moments()[1]))
             steps, narrow = np.clip(likelihood.named(own).flight, 0.02 * steps, steps), True
     else:
-        raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", r.name))
+        raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", file=r.name))
     return _summary(r, wake, likelihood, m)
 
 
@@ -224,9 +224,9 @@ def _fly(r: Recording, start: float, closures: Closures) -> Trajectory:
     try:
         path = bounce(r.conditions, release, closures, float(end), TOLERANCE)
     except IntegrationError as error:
-        raise InputError(Defect(str(error), r.name)) from None
+        raise InputError(Defect(str(error), file=r.name)) from None
     if not path.impacts:
-        raise InputError(Defect("the model does not reach the wall within the record", r.name))
+        raise InputError(Defect("the model does not reach the wall within the record", file=r.name))
     return path
 
 

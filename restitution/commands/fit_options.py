@@ -163,6 +163,6 @@ def _normal(name: str, mean: float, sigma: float):
 
     if not (math.isfinite(mean) and 0 < sigma < math.inf):
         raise InputError(
-            Defect("a prior needs a finite mean and a positive error", None, None, name, f"{sigma:g}")
+            Defect("a prior needs a finite mean and a positive error", field=name, value=f"{sigma:g}")
         )
     return Normal(mean, sigma)

@@ -129,11 +129,11 @@ def _checks(given: str | Path | None) -> list[Check]:
         return []
     path = Path(given)
     if not path.is_file():
-        raise InputError(Defect("is no file", str(path)))
+        raise InputError(Defect("is no file", file=str(path)))
     try:
         return TypeAdapter(list[Check]).validate_python(json.loads(path.read_bytes()))
     except (ValidationError, ValueError) as error:
-        raise InputError(Defect(f"is no list of checks: {error}".splitlines()[0], str(path))) from None
+        raise InputError(Defect(f"is no list of checks: {error}".splitlines()[0], file=str(path))) from None
 
 
 def write(
