@@ -99,7 +99,7 @@ def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
         missing = e["type"] == "missing"
         value = None if missing or isinstance(e["input"], dict) else str(e["input"])
         rule = _RULES.get(e["type"], e["msg"])
-        found.append(Defect(rule, file, None, ".".join(str(p) for p in e["loc"]), value))
+        found.append(Defect(rule, file=file, field=".".join(str(p) for p in e["loc"]), value=value))
     return found
 
 
@@ -109,11 +109,13 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
+        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
     except UnicodeDecodeError as error:
-        raise InputError(Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", str(path))) from None
+        raise InputError(
+            Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", file=str(path))
+        ) from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(Defect(f"is not TOML: {error}", str(path))) from None
+        raise InputError(Defect(f"is not TOML: {error}", file=str(path))) from None
 
 
 def read_conditions(path: str | Path) -> Conditions:

@@ -6,7 +6,7 @@ into one line a defect and exit status 2. Any other exception is a defect of thi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 
 @dataclass(frozen=True)
@@ -14,6 +14,7 @@ class Defect:
     """One thing wrong at one place. ``row`` is the line number in the file, the header being row 1."""
 
     rule: str
+    _: KW_ONLY
     file: str | None = None
     row: int | None = None
     field: str | None = None

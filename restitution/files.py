@@ -13,21 +13,21 @@ def check_place(path: str | Path) -> None:
     """Raise :class:`InputError` where a file could not be written, before the work that it is for is done."""
     place = Path(path)
     if place.is_dir():
-        raise InputError(Defect("cannot be written: it is a folder", str(path)))
+        raise InputError(Defect("cannot be written: it is a folder", file=str(path)))
     if not place.parent.is_dir():
-        raise InputError(Defect(f"cannot be written: there is no folder {place.parent}", str(path)))
+        raise InputError(Defect(f"cannot be written: there is no folder {place.parent}", file=str(path)))
     if not os.access(place.parent, os.W_OK):
-        raise InputError(Defect(f"cannot be written: the folder {place.parent} is not writable", str(path)))
+        raise InputError(Defect(f"cannot be written: the folder {place.parent} is not writable", file=str(path)))
 
 
 def check_folder(path: str | Path) -> None:
     """Raise :class:`InputError` where files could not be put into a folder, which need not exist yet."""
     place = Path(path)
     if place.exists() and not place.is_dir():
-        raise InputError(Defect("is not a folder", str(path)))
+        raise InputError(Defect("is not a folder", file=str(path)))
     there = next(p for p in (place, *place.absolute().parents) if p.exists())
     if not there.is_dir() or not os.access(there, os.W_OK):
-        raise InputError(Defect(f"cannot be written: {there} is not a folder that can be written", str(path)))
+        raise InputError(Defect(f"cannot be written: {there} is not a folder that can be written", file=str(path)))
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:
@@ -39,7 +39,7 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
     try:
         target = Path(path).resolve()
         if target.exists() and not target.is_file():
-            raise InputError(Defect("is not a regular file", str(path)))
+            raise InputError(Defect("is not a regular file", file=str(path)))
     except OSError as error:
         raise _defect(error, path) from None
     _write({str(path): (target, content)})
@@ -49,7 +49,7 @@ def write_folder(folder: str | Path, contents: Mapping[str, str | bytes]) -> Non
     """Write several files into ``folder``, made if need be: all are written aside first, then renamed in turn."""
     folder, made = Path(folder), []
     if folder.exists() and not folder.is_dir():
-        raise InputError(Defect("is not a folder", str(folder)))
+        raise InputError(Defect("is not a folder", file=str(folder)))
     try:
         made = [place for place in (folder, *folder.parents) if not place.exists()]
         folder.mkdir(parents=True, exist_ok=True)
@@ -69,7 +69,7 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
     try:
         for name, (target, content) in contents.items():
             if target.is_dir():
-                raise InputError(Defect("cannot be written: it is a folder", name))
+                raise InputError(Defect("cannot be written: it is a folder", file=name))
             temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
             try:
                 with temporary.open("xb") as stream:
@@ -88,4 +88,4 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
 
 
 def _defect(error: OSError, name: str | Path) -> InputError:
-    return InputError(Defect(f"cannot be written: {error.strerror or error}", str(name)))
+    return InputError(Defect(f"cannot be written: {error.strerror or error}", file=str(name)))

@@ -56,10 +56,10 @@ def find(given: str | Path) -> Path:
     if str(given) in known:
         return FOLDER / f"{given}.toml"
     if path.is_dir():
-        raise InputError(Defect("is a folder; name the case's TOML file", str(given)))
+        raise InputError(Defect("is a folder; name the case's TOML file", file=str(given)))
     near = difflib.get_close_matches(path.stem, known, n=3, cutoff=0.5)
     hint = f"did you mean {' or '.join(near)}?" if near else "restitution simulate --list names those"
-    raise InputError(Defect(f"is no file and no shipped case; {hint}", str(given)))
+    raise InputError(Defect(f"is no file and no shipped case; {hint}", file=str(given)))
 
 
 def _content(path: Path, depth: int = 0) -> dict[str, Any]:
@@ -70,14 +70,14 @@ def _content(path: Path, depth: int = 0) -> dict[str, Any]:
         return content
     if not isinstance(base, str) or depth == _DEEPEST:
         rule = "must be the name of a case" if depth < _DEEPEST else f"more than {_DEEPEST} bases deep: a circle?"
-        raise InputError(Defect(rule, str(path), None, "base", str(base)))
+        raise InputError(Defect(rule, file=str(path), field="base", value=str(base)))
     beside = path.parent / f"{base.removesuffix('.toml')}.toml"
     try:
         below = _content(beside if beside.is_file() else find(base), depth + 1)
     except InputError as error:
         if error.defects[0].file != base:
             raise  # it is about what stands in the base
-        raise InputError(Defect(error.defects[0].rule, str(path), None, "base", base)) from None
+        raise InputError(Defect(error.defects[0].rule, file=str(path), field="base", value=base)) from None
     for reader in ("title", "note"):
         below.pop(reader, None)
     return _over(below, content)
@@ -100,10 +100,10 @@ def _with_record(content: dict[str, Any], file: str) -> None:
     try:
         record = datasets.resource(name)
     except InputError as error:
-        raise InputError(Defect(str(error), file, None, "record")) from None
+        raise InputError(Defect(str(error), file=file, field="record")) from None
     if record.conditions is None:
         rule = "is a reference table, not a record with fluid and sphere"
-        raise InputError(Defect(rule, file, None, "record", name))
+        raise InputError(Defect(rule, file=file, field="record", value=name))
     stated = record.conditions.model_dump(include={"fluid", "sphere", "wall", "gravity"}, exclude_none=True)
     for key, value in stated.items():
         given = content.get(key)

@@ -25,7 +25,7 @@ def defects(case: Case, file: str) -> list[Defect]:
     """Everything wrong with a case whose single fields are valid."""
     rules = (_fall, _release, _span, _film, _along, _contact, *((_resolution, _box) if case.numerics else ()))
     return [
-        Defect(rule, file, None, field, None if value is None else f"{value}")
+        Defect(rule, file=file, field=field, value=None if value is None else f"{value}")
         for check in rules
         for field, value, rule in check(case)
     ]

@@ -143,7 +143,7 @@ def run_validate(args: argparse.Namespace) -> None:
 
     schema = datasets.schema(args.schema) if args.schema else infer_schema(path, columns)
     if args.unit == "mm" and "gap_m" not in schema.columns:
-        raise InputError(Defect(f"--unit mm: a {schema.name} table has no gap_m", str(path)))
+        raise InputError(Defect(f"--unit mm: a {schema.name} table has no gap_m", file=str(path)))
     _raise(check_table(path, schema, columns, {"gap_m": 1e-3} if args.unit == "mm" else None))
     show(f"{path}: valid {schema.name} table")
 

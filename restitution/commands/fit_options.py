@@ -82,17 +82,17 @@ def add_plan(parser: argparse.ArgumentParser) -> None:
 
 
 def _bounds(text: str) -> tuple[str, tuple[float, float]]:
-    found = re.fullmatch(r"([A-Za-z_]\w*)=([^:]+):([^:]+)", text)
+    parts = re.fullmatch(r"([A-Za-z_]\w*)=([^:]+):([^:]+)", text)
     try:
-        return found[1], (float(found[2]), float(found[3]))
+        return parts[1], (float(parts[2]), float(parts[3]))
     except (TypeError, ValueError):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=LOW:HIGH") from None
 
 
 def _prior(text: str) -> tuple[str, tuple[float, float]]:
-    found = re.fullmatch(r"([A-Za-z_]\w*)=([^+]+)\+-(.+)", text)
+    parts = re.fullmatch(r"([A-Za-z_]\w*)=([^+]+)\+-(.+)", text)
     try:
-        return found[1], (float(found[2]), float(found[3]))
+        return parts[1], (float(parts[2]), float(parts[3]))
     except (TypeError, ValueError):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=MEAN+-SIGMA") from None
 
@@ -163,6 +163,6 @@ def _normal(name: str, mean: float, sigma: float):
 
     if not (math.isfinite(mean) and 0 < sigma < math.inf):
         raise InputError(
-            Defect("a prior needs a finite mean and a positive error", None, None, name, f"{sigma:g}")
+            Defect("a prior needs a finite mean and a positive error", field=name, value=f"{sigma:g}")
         )
     return Normal(mean, sigma)

@@ -82,8 +82,8 @@ def run(args: argparse.Namespace) -> None:
 def _show_records(measured: Measured) -> None:
     """What each record says, law or no law."""
     rows = []
-    for wake, found in measured.found.items():
-        for t in found:
+    for wake, trajectories in measured.trajectories.items():
+        for t in trajectories:
             d = t.recording.conditions.sphere.diameter
             e = ", ".join(f"{mean:.3f} +- {sigma:.3f}" for mean, sigma in t.restitutions)
             start = "{} {:.4g} +- {:.2g}".format(t.recording.start.name, *t.unknowns[t.recording.start.name])
@@ -102,8 +102,8 @@ def _rank(measured: Measured, plans: dict, how: Reading) -> str:
     from restitution.calibration.trajectories.fit import law_fit, observations
 
     best = ""
-    for wake, found in measured.found.items():
-        o = observations(found, how)
+    for wake, trajectories in measured.trajectories.items():
+        o = observations(trajectories, how)
         ranking: Ranking = rank(list(plans.items()), o)
         rows = []
         for row in ranking.rows():
@@ -127,12 +127,12 @@ def _slopes(fit: TrajectoryFit) -> list[tuple[str, str]]:
     """The slope-based fit beside it."""
     if isinstance(fit.slopes, str):
         return [("by slopes", f"no fit: {fit.slopes}")]
-    found = fit.slopes.maximum
+    maximum = fit.slopes.maximum
     facts = []
-    for j, p in enumerate(found.parameters):
+    for j, p in enumerate(maximum.parameters):
         if p.mean:
-            low, high = found.intervals[0.68][j]
-            facts.append(("by slopes", f"{p.name} {found.values[j]:.5g} (68% {low:.5g} to {high:.5g})"))
+            low, high = maximum.intervals[0.68][j]
+            facts.append(("by slopes", f"{p.name} {maximum.values[j]:.5g} (68% {low:.5g} to {high:.5g})"))
     return facts
 
 

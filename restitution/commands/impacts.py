@@ -74,14 +74,14 @@ def run(args: argparse.Namespace) -> None:
     if args.out is not None:
         _check_output(args)
     track, conditions, kind = _read(args)
-    found = find_impacts(
+    impacts = find_impacts(
         track, conditions, args.speed, args.stokes, Path(args.track).stem, kind, args.frames, args.film
     )
-    table = found.table()
+    table = impacts.table()
     if args.out:
         write_whole(args.out, table_text(table))
-    _show(table, found.sigma, "m" if track.quantity == "gap" else "m/s")
-    for note in found.notes:
+    _show(table, impacts.sigma, "m" if track.quantity == "gap" else "m/s")
+    for note in impacts.notes:
         show(f"note: {note}")
 
 
@@ -93,7 +93,7 @@ def _check_output(args: argparse.Namespace) -> None:
         raise InputError(Defect("names no file", field="--out"))
     for given in (args.track, args.conditions):
         if given and Path(given).exists() and Path(args.out).resolve() == Path(given).resolve():
-            raise InputError(Defect("would replace an input", args.out, None, "--out"))
+            raise InputError(Defect("would replace an input", file=args.out, field="--out"))
 
 
 def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
@@ -110,7 +110,7 @@ def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
     columns = dict(args.column)
     if not Path(args.track).exists():
         if args.track not in datasets.names():
-            raise InputError(Defect("does not exist, and no shipped record has this name", args.track))
+            raise InputError(Defect("does not exist, and no shipped record has this name", file=args.track))
         resource = datasets.resource(args.track)
         conditions = read_conditions(args.conditions) if args.conditions else resource.conditions
         return datasets.load_track(args.track, args.sigma), conditions, resource.kind
@@ -123,7 +123,9 @@ def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
             raise InputError(f"columns named by --column have no stated unit: add {option} {choice}")
     schema = infer_schema(args.track, columns)
     if schema.name not in ("trajectory", "settling"):
-        raise InputError(Defect(f"is a {schema.name} table, not a track of time and gap or velocity", args.track))
+        raise InputError(
+            Defect(f"is a {schema.name} table, not a track of time and gap or velocity", file=args.track)
+        )
     length = 1e-3 if args.unit == "mm" else 1.0
     time = 1e-3 if args.time_unit == "ms" else 1.0
     value = schema.columns[1]
@@ -164,7 +166,7 @@ def _write_template(folder: Path) -> None:
 
     for name in ("track.csv", "conditions.toml"):
         if (folder / name).exists():
-            raise InputError(Defect("exists already; a template replaces nothing", str(folder / name)))
+            raise InputError(Defect("exists already; a template replaces nothing", file=str(folder / name)))
     track = table_text(datasets.load("gondret2002_st152").iloc[:45], None)
     write_folder(folder, {"track.csv": track, "conditions.toml": _CONDITIONS})
     show(f"{folder / 'track.csv'}: a track, the first bounce of Gondret et al. 2002")

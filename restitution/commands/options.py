@@ -47,5 +47,5 @@ def check_output(option: str, out: str | None, inputs: Iterable[str] = ()) -> No
     if not out:
         raise InputError(Defect("names no file", field=option))
     if any(Path(given).exists() and Path(out).resolve() == Path(given).resolve() for given in inputs):
-        raise InputError(Defect("would replace an input", out, None, option))
+        raise InputError(Defect("would replace an input", file=out, field=option))
     check_place(out)

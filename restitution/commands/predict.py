@@ -52,12 +52,12 @@ def values(text: str) -> dict[str, float]:
 def numbers(text: str) -> list[float]:
     """Positive numbers separated by commas as an argument type."""
     try:
-        found = [float(part) for part in text.split(",")]
+        parsed = [float(part) for part in text.split(",")]
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers") from None
-    if not all(0 < x < float("inf") for x in found):
+    if not all(0 < x < float("inf") for x in parsed):
         raise argparse.ArgumentTypeError(f"{text!r} must be positive and finite")
-    return found
+    return parsed
 
 
 def conditions_of(args: argparse.Namespace) -> Conditions | None:
@@ -99,18 +99,23 @@ def run(args: argparse.Namespace) -> None:
         low, high = result.stokes_range
         speeds = np.array(args.speed) if args.speed else np.geomspace(low, high, 8) / per_speed
         St = speeds * per_speed
-    found = predict(result, St, args.e_dry, conditions, dict(args.level))
+    prediction = predict(result, St, args.e_dry, conditions, dict(args.level))
     rows = []
     for i, x in enumerate(St):
         ends = [
             f"{max(low, 0):.3f} to {high:.3f}"
-            for table in (found.law, found.impact)
+            for table in (prediction.law, prediction.impact)
             for low, high in (table[level][i] for level in table)
         ]
         speed = [] if speeds is None else [f"{speeds[i]:.4g}"]
-        rows.append((*speed, f"{x:.4g}", f"{found.value[i]:.3f}", *ends))
-    headings = ("St", "e_eff", *(f"law, {x}" for x in found.law), *(f"one impact, {x}" for x in found.impact))
+        rows.append((*speed, f"{x:.4g}", f"{prediction.value[i]:.3f}", *ends))
+    headings = (
+        "St",
+        "e_eff",
+        *(f"law, {x}" for x in prediction.law),
+        *(f"one impact, {x}" for x in prediction.impact),
+    )
     show(f"{result.law.text}; Stokes number {result.stokes_convention}, speed {result.speed_definition}")
     show_rows(headings if speeds is None else ("speed m/s", *headings), rows)
-    for warning in found.warnings:
+    for warning in prediction.warnings:
         print(f"warning: {warning}", file=sys.stderr)  # noqa: T201

@@ -18,10 +18,12 @@ def folder_for(given: str | None, default: str, model: str) -> Path:
         raise InputError(Defect("names no folder", field="--out"))
     folder = Path(given or default)
     if folder.exists() and not folder.is_dir():
-        raise InputError(Defect("is no folder", str(folder), None, "--out"))
+        raise InputError(Defect("is no folder", file=str(folder), field="--out"))
     other = model_in(folder)
     if other not in (None, model):
-        raise InputError(Defect(f"holds results of the other model, {other}: choose another folder", str(folder)))
+        raise InputError(
+            Defect(f"holds results of the other model, {other}: choose another folder", file=str(folder))
+        )
     return folder
 
 

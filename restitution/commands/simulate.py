@@ -96,7 +96,7 @@ def _write_template(case: Path, target: Path) -> None:
     from restitution.files import write_whole
 
     if target.exists():
-        raise InputError(Defect("exists already; a template replaces nothing", str(target)))
+        raise InputError(Defect("exists already; a template replaces nothing", file=str(target)))
     write_whole(target, case.read_text("utf-8"))
     show(f"{target}: next: restitution simulate {target} --out results")
 

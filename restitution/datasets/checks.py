@@ -24,7 +24,7 @@ def check_package(path: str | Path | None = None) -> list[Defect]:
     file = str(place / "datapackage.json")
     every = [r.name for r in package.resources]
     repeated = [name for name in dict.fromkeys(every) if every.count(name) > 1]
-    defects = [Defect("is the name of more than one resource", file, None, name) for name in repeated]
+    defects = [Defect("is the name of more than one resource", file=file, field=name) for name in repeated]
     for r in package.resources:
         defects += file_defects(place / r.path, r)
         try:
@@ -35,7 +35,7 @@ def check_package(path: str | Path | None = None) -> list[Defect]:
         defects += check_table(place / r.path, rules)
         for name in (*r.measured, *r.derived, *r.digitisation_error.sigma):
             if name not in rules.columns:
-                defects.append(Defect(f"is not a column of {r.path}", file, None, f"{r.name}.{name}"))
+                defects.append(Defect(f"is not a column of {r.path}", file=file, field=f"{r.name}.{name}"))
     return defects
 
 
@@ -58,4 +58,4 @@ def infer_schema(path: str | Path, columns: Mapping[str, str] | None = None) -> 
     known = "; ".join(f"{s.name} ({', '.join(s.required)})" for s in kinds)
     what = f"the header ({', '.join(header)}) does not tell which kind of table this is"
     rule = f"{what}: name the kind or map its columns; known: {known}"
-    raise InputError(Defect(rule, str(path), 1))
+    raise InputError(Defect(rule, file=str(path), row=1))

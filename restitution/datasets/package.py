@@ -150,8 +150,8 @@ def file_defects(path: Path, r: Resource) -> list[Defect]:
         return []
     defects = []
     if len(content) != r.bytes:
-        defects.append(Defect(f"has {len(content)} bytes; the package records {r.bytes}", str(path)))
+        defects.append(Defect(f"has {len(content)} bytes; the package records {r.bytes}", file=str(path)))
     digest = f"sha256:{hashlib.sha256(content).hexdigest()}"
     if digest != r.hash:
-        defects.append(Defect(f"has changed: its hash is {digest}; the package records {r.hash}", str(path)))
+        defects.append(Defect(f"has changed: its hash is {digest}; the package records {r.hash}", file=str(path)))
     return defects

@@ -74,10 +74,10 @@ def filmed(track: Track, conditions: Conditions, first_s: float | None = None) -
         times.setdefault(k, _touch(track, frame))
     if not times:
         raise InputError("the track has no contact")
-    found = np.array([time for _, time in sorted(times.items())])
+    touches = np.array([time for _, time in sorted(times.items())])
     if first_s is not None:
-        found[0] = first_s
-    return bounces(track.time_s, track.value, found, 3 * track.sigma)
+        touches[0] = first_s
+    return bounces(track.time_s, track.value, touches, 3 * track.sigma)
 
 
 def _touch(track: Track, frame: int) -> float:

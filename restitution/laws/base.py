@@ -101,10 +101,8 @@ class Law:
                 raise InputError(
                     Defect(
                         f"parameter of {self.name} outside its bounds [{low:g}, {high:g}]",
-                        None,
-                        None,
-                        f.name,
-                        f"{value:g}",
+                        field=f.name,
+                        value=f"{value:g}",
                     )
                 )
 
@@ -114,10 +112,8 @@ class Law:
             raise InputError(
                 Defect(
                     f"must be below {upper} = {getattr(self, upper):g} in {self.name}",
-                    None,
-                    None,
-                    lower,
-                    f"{getattr(self, lower):g}",
+                    field=lower,
+                    value=f"{getattr(self, lower):g}",
                 )
             )
 

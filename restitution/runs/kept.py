@@ -129,7 +129,7 @@ def _result(place: Path, case: Case, about: RunRecord, changed: tuple[str, ...] 
         except InputError as error:
             defects += error.defects
     if defects:
-        raise InputError(*defects, Defect(f"has damaged tables: {_MEND}", str(place)))
+        raise InputError(*defects, Defect(f"has damaged tables: {_MEND}", file=str(place)))
     if about.model == RESOLVED and (departures(about.filmed, filmed(case)) or not physics.impacts_agree()):
         tables["impacts"] = simulated_impacts(tables["trajectory"], case)[0]
     flow = FlowFrames()
@@ -149,7 +149,9 @@ def _check_end(path: Path, time: np.ndarray, about: RunRecord) -> None:
     """A table that was cut is well formed; it ends before the run did."""
     end = time[0] + about.steps * about.step_s
     if len(time) > 1 and time[-1] < end - 2 * (time[1] - time[0]):
-        raise InputError(Defect(f"ends before the run, which went on to {end:.4g} s", str(path), len(time) + 1))
+        raise InputError(
+            Defect(f"ends before the run, which went on to {end:.4g} s", file=str(path), row=len(time) + 1)
+        )
 
 
 def ensure(case: Case, folder: Path, fresh: bool = False, show: Callable[[str], None] | None = None) -> KeptRun:
@@ -164,5 +166,5 @@ def ensure(case: Case, folder: Path, fresh: bool = False, show: Callable[[str], 
     simulate(case, place, resume=can_resume(place, case) and not fresh, every_step=False, show=show)
     made = read_run(case, folder)
     if made is None:
-        raise InputError(Defect(f"has no result after its run; expected {', '.join(KEPT)}", str(place)))
+        raise InputError(Defect(f"has no result after its run; expected {', '.join(KEPT)}", file=str(place)))
     return made

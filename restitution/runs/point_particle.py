@@ -112,7 +112,7 @@ def closures_of(case: Case, file: str = "") -> Closures:
         return Closures(lubrication=lubrication, contact=case.floor or 0.0, tension=tension, e_dry=e_dry)
     if contact.mode != "effective":
         rule = "stretches a contact in time, which takes none for a point particle: use 'dry' or 'effective'"
-        raise InputError(Defect(rule, place, None, "contact.mode", contact.mode))
+        raise InputError(Defect(rule, file=place, field="contact.mode", value=contact.mode))
     if contact.law is None:
         measured = measured_restitution(case.record) if contact.measured == "record" else contact.measured
         return Closures(measured=measured)

@@ -82,9 +82,9 @@ def read_record(folder: Path, mend: str = "run the case again") -> RunRecord | N
     try:
         record = RunRecord.model_validate(json.loads(path.read_bytes()))
     except (ValidationError, ValueError):
-        raise InputError(Defect(f"is damaged: {mend}", str(path))) from None
+        raise InputError(Defect(f"is damaged: {mend}", file=str(path))) from None
     if not record.finished:
-        raise InputError(Defect(f"is of a run that did not finish: {mend}", str(path)))
+        raise InputError(Defect(f"is of a run that did not finish: {mend}", file=str(path)))
     return record
 
 

@@ -39,7 +39,7 @@ class ResolvedRun:
     def __init__(self, case: Case, file: str = ""):
         if case.numerics is None:
             raise InputError(
-                Defect("is missing: the resolved solver needs it", file or case.name, None, "numerics")
+                Defect("is missing: the resolved solver needs it", file=file or case.name, field="numerics")
             )
         self.case = case
         self.warnings: list[str] = []
@@ -49,7 +49,7 @@ class ResolvedRun:
                 self.setup = set_up(case)
                 self.simulation, self.spheres = self.setup.build()
             except lbm.InputError as error:
-                raise InputError(Defect(str(error), file or case.name, None, "numerics")) from None
+                raise InputError(Defect(str(error), file=file or case.name, field="numerics")) from None
         self.flow = self.setup.flow
         self.warnings += [str(w.message) for w in caught]
         self.guard = DivergenceGuard()

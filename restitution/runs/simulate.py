@@ -119,7 +119,7 @@ def _resume(run: ResolvedRun, key: str, frames: FlowFrames, folder: Path) -> flo
     state = _identity(folder)
     if state.get("key") != key:
         rule = "is of another case or of another version of the code: leave --resume out to start anew"
-        raise InputError(Defect(rule, str(folder / CHECKPOINT)))
+        raise InputError(Defect(rule, file=str(folder / CHECKPOINT)))
     run.restore(folder / CHECKPOINT)
     frames.read(folder / "flow.npz")
     return float(state.get("seconds", 0.0))

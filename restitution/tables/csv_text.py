@@ -47,7 +47,7 @@ class CsvText:
                 self._read(data)
 
     def _defect(self, rule: str, row: int | None = None) -> None:
-        self.defects.append(Defect(rule, str(self.path), row))
+        self.defects.append(Defect(rule, file=str(self.path), row=row))
 
     def _read(self, data: bytes) -> None:
         bad: set[int] = set()

@@ -108,15 +108,15 @@ def _check(
         if len(cells) == len(header):
             rows.append((number, cells))
         elif not any(cells):
-            found.append(Defect("is an empty line", file, number))
+            found.append(Defect("is an empty line", file=file, row=number))
         else:
             hint = "; is the decimal sign a comma?" if len(cells) == 2 * len(header) else ""
             rule = f"has {len(cells)} values where the header names {len(header)} columns{hint}"
-            found.append(Defect(rule, file, number))
+            found.append(Defect(rule, file=file, row=number))
     total, needed = len(text.rows) + text.unreadable, schema.rules.minimum_rows
     if total < needed:
         rule = f"has {total} rows below the header; at least {needed} are needed"
-        found.append(Defect(rule, file))
+        found.append(Defect(rule, file=file))
 
     values: dict[str, list] = {}
     bad: set[int] = set()
@@ -126,12 +126,20 @@ def _check(
             cells = [row[position] for _, row in rows]
             values[f.name], wrong = _column(f, cells, scale.get(f.name, 1.0))
             bad.update(index for index, _ in wrong)
-            found += [Defect(rule, file, rows[i][0], own, cells[i]) for i, rule in wrong]
+            found += [Defect(rule, file=file, row=rows[i][0], field=own, value=cells[i]) for i, rule in wrong]
 
     lines = [number for number, _ in rows]
     for i, name, rule in _row_defects(schema.rules, values, lines, [i for i in range(len(rows)) if i not in bad]):
         own = wanted.get(name)
-        found.append(Defect(rule, file, lines[i], own, rows[i][1][header.index(own)] if own in header else None))
+        found.append(
+            Defect(
+                rule,
+                file=file,
+                row=lines[i],
+                field=own,
+                value=rows[i][1][header.index(own)] if own in header else None,
+            )
+        )
 
     order = {own: i for i, own in enumerate(header)}
     found.sort(key=lambda d: (d.row or 0, order.get(d.field, -1)))
@@ -144,16 +152,16 @@ def _header_defects(
     known = f"is not a column of the {schema.name} table: {', '.join(schema.columns)}"
     for name in dict.fromkeys((*columns, *scale)):
         if name not in schema.columns:
-            yield Defect(known, None, None, name)
+            yield Defect(known, field=name)
     wanted = {columns.get(name, name): name in schema.required or name in columns for name in schema.columns}
     for own, needed in wanted.items():
         if needed and own not in header:
-            yield Defect(f"is missing; the header names {', '.join(header)}", file, 1, own)
+            yield Defect(f"is missing; the header names {', '.join(header)}", file=file, row=1, field=own)
     for i, name in enumerate(header):
         if name in header[:i] and (name in wanted or not columns):
-            yield Defect("appears more than once in the header", file, 1, name)
+            yield Defect("appears more than once in the header", file=file, row=1, field=name)
         elif name not in wanted and not columns:
-            yield Defect(known, file, 1, name or f"column {i + 1}")
+            yield Defect(known, file=file, row=1, field=name or f"column {i + 1}")
 
 
 def _row_defects(

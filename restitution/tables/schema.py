@@ -80,11 +80,11 @@ def read_record(path: str | Path, model: type[Model]) -> Model:
     try:
         return model.model_validate(json.loads(Path(path).read_bytes()))
     except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
+        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
     except ValidationError as error:
         raise InputError(*defects_of(error, str(path))) from None
     except ValueError as error:
-        raise InputError(Defect(f"is not JSON: {error}", str(path))) from None
+        raise InputError(Defect(f"is not JSON: {error}", file=str(path))) from None
 
 
 def read_schema(path: str | Path) -> Schema:

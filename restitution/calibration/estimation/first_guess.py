@@ -23,12 +23,11 @@ def first_guess(likelihood: Likelihood) -> NDArray:
         names = ", ".join(f"{p.name} = {p.start:g}" for p in parameters if p.mean)
         f = likelihood.moments(values)[0]
         row = int(np.argmin(np.isfinite(f)))
-        where = o.places[row] if o.places else (None, None)
         rule = (
             f"the law has no finite value here at the start ({names}): give a start or bounds where it has "
             "(--bounds NAME=LOW:HIGH starts in the middle)"
         )
-        raise InputError(Defect(rule, *where, "stokes", f"{o.St[row]:g}"))
+        raise InputError(Defect(rule, **o.place(row), field="stokes", value=f"{o.St[row]:g}"))
     if not len(mean):
         return values
 
@@ -49,7 +48,7 @@ def first_guess(likelihood: Likelihood) -> NDArray:
         starts += [low + part * (high - low) for part in (0.02, 0.1, 0.3, 0.6)]
     starts = [np.clip(s, low + 1e-9, high - 1e-9) for s in starts]
     starts.sort(key=lambda s: float(np.sum(misfit(s) ** 2)))
-    best = min((least_squares(misfit, s, bounds=(low, high)) for s in starts[:2]), key=lambda found: found.cost)
+    best = min((least_squares(misfit, s, bounds=(low, high)) for s in starts[:2]), key=lambda fit: fit.cost)
     values[mean] = [parameters[j].outward(v) for j, v in zip(mean, best.x, strict=True)]
     left = float(np.sqrt(np.mean((o.e - likelihood.moments(values)[0])[seen] ** 2)))
     for j, p in enumerate(parameters):

@@ -72,23 +72,23 @@ def estimate(
 
     freedom = np.full(len(parameters), np.inf)
     if not intervals:
-        found = maximise(function, parameters, start, covariance=covariance, steps=steps)
-        return Fit(plan, likelihood, found, freedom, restriction is not None, ())
-    found = maximise(function, parameters, start)
+        best = maximise(function, parameters, start, covariance=covariance, steps=steps)
+        return Fit(plan, likelihood, best, freedom, restriction is not None, ())
+    best = maximise(function, parameters, start)
     mean = np.array([p.mean for p in parameters], bool)
-    check_bounds(found)
+    check_bounds(best)
     if restriction is not None:
-        freedom[mean] = restriction.degrees_of_freedom(found.values)
+        freedom[mean] = restriction.degrees_of_freedom(best.values)
     wanted = [intervals is True or p.name in intervals for p in parameters]
     rises = {
         level: [threshold(level, nu) if want else None for nu, want in zip(freedom, wanted, strict=True)]
         for level in LEVELS
     }
-    found = maximise(function, parameters, found.values, Thresholds(rises))
-    return Fit(plan, likelihood, found, freedom, restriction is not None, _notes(likelihood, found))
+    best = maximise(function, parameters, best.values, Thresholds(rises))
+    return Fit(plan, likelihood, best, freedom, restriction is not None, _notes(likelihood, best))
 
 
-def _notes(likelihood: Likelihood, found: Maximum) -> tuple[str, ...]:
+def _notes(likelihood: Likelihood, best: Maximum) -> tuple[str, ...]:
     """What a reader must know of this estimate."""
     o, notes = likelihood.observations, list(likelihood.observations.notes)
     if o.speed != likelihood.model.speed and likelihood.model.speed != "unstated":
@@ -96,8 +96,8 @@ def _notes(likelihood: Likelihood, found: Maximum) -> tuple[str, ...]:
             f"{likelihood.model.name} is meant for the {likelihood.model.speed} impact speed; the data have the "
             f"{o.speed} speed: the parameters hold for that one"
         )
-    for j, p in enumerate(found.parameters):
-        if p.mean and (side := found.at_bound(j)):
+    for j, p in enumerate(best.parameters):
+        if p.mean and (side := best.at_bound(j)):
             notes.append(f"{p.name} lies on its {side} bound: its interval is one-sided")
         if p.name == OFFSET and len(likelihood.source_names) < 5:
             few = len(likelihood.source_names)

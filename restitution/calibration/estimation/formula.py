@@ -22,7 +22,14 @@ from restitution.calibration.estimation.parameters import Parameter, scale_of
 from restitution.errors import Defect, InputError
 from restitution.stokes import Speed, convention
 
-LONGEST, DEEPEST, MOST_NODES, LARGEST_EXPONENT = 500, 30, 200, 50.0
+LONGEST = 500
+"""Characters of a formula."""
+DEEPEST = 30
+"""Brackets and operations within one another."""
+MOST_NODES = 200
+"""Numbers, names and operations."""
+LARGEST_EXPONENT = 50.0
+"""Beyond it a power of St leaves the range of numbers."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,29}")
 Pair = tuple[Any, Any]
 """A value and its slope in St."""

@@ -20,38 +20,38 @@ def check_data(likelihood: Likelihood) -> None:
     named = ", ".join(p.name for p in mean)
     file = next(iter(o.files), None)
     if not len(o):
-        raise InputError(Defect("has no impacts", file))
+        raise InputError(Defect("has no impacts", file=file))
     if not len(measured):
         rule = "no impact has a rebound: limits alone do not determine a law; add impacts with a measured e_eff"
-        raise InputError(Defect(rule, file))
+        raise InputError(Defect(rule, file=file))
     needed = free + (SCATTER in [p.name for p in likelihood.parameters])
     if len(measured) < needed:
         rule = f"{len(measured)} measured impacts are fewer than the {needed} parameters ({named}"
         scatter = ", scatter" * (needed > free)
-        raise InputError(Defect(f"{rule}{scatter}): add impacts, fix a parameter, or give it a prior", file))
+        raise InputError(Defect(f"{rule}{scatter}): add impacts, fix a parameter, or give it a prior", file=file))
     distinct = len(np.unique(measured.St))
     if distinct == 1 and len(measured) > 1:
         rule = "all measured impacts have the same Stokes number, which tells nothing of a law in it: vary St"
-        raise InputError(Defect(rule, file, None, "stokes", f"{measured.St[0]:g}"))
+        raise InputError(Defect(rule, file=file, field="stokes", value=f"{measured.St[0]:g}"))
     if distinct < free:
         rule = f"{distinct} Stokes numbers cannot determine {free} parameters ({named}): vary St, or fix one"
-        raise InputError(Defect(rule, file))
+        raise InputError(Defect(rule, file=file))
     if SCATTER not in [p.name for p in likelihood.parameters] and (measured.e_sigma <= 0).any():
         rule = "some impacts have no error, and no scatter is estimated: give e_eff_sigma, or let the scatter be"
-        raise InputError(Defect(rule, file))
+        raise InputError(Defect(rule, file=file))
 
 
-def check_bounds(found: Maximum) -> None:
+def check_bounds(best: Maximum) -> None:
     """Refuse an estimate stuck on a bound; e_dry may lie at 1, and a prior may hold a parameter anywhere."""
-    for j, p in enumerate(found.parameters):
-        side = found.at_bound(j) if p.mean else None
+    for j, p in enumerate(best.parameters):
+        side = best.at_bound(j) if p.mean else None
         if side and not p.name.startswith("e_dry") and not isinstance(p.prior, Normal):
             low, high = p.bounds
             rule = (
                 f"is stuck on its {side} bound [{low:g}, {high:g}]: the data ask for more than the law allows; "
                 f"widen it (--bounds {p.name}=LOW:HIGH), fix it, or fit another law"
             )
-            raise InputError(Defect(rule, None, None, p.name, f"{found.values[j]:.4g}"))
+            raise InputError(Defect(rule, field=p.name, value=f"{best.values[j]:.4g}"))
 
 
 def check_flat(likelihood: Likelihood, values: NDArray) -> None:
@@ -64,7 +64,7 @@ def check_flat(likelihood: Likelihood, values: NDArray) -> None:
         reach = (p.bounds[1] - p.bounds[0]) if p.scale == "linear" else values[j]
         if isinstance(p.prior, Flat) and np.max(np.abs(J[:, place])) * reach < 1e-9:
             rule = "the likelihood does not depend on it here: it is flat; fix it, or choose another start or law"
-            raise InputError(Defect(rule, None, None, p.name, f"{values[j]:.4g}"))
+            raise InputError(Defect(rule, field=p.name, value=f"{values[j]:.4g}"))
     size = np.sqrt(np.sum(J**2, axis=0))
     free = [i for i, j in enumerate(mean) if isinstance(parameters[j].prior, Flat)]
     if len(free) > 1:

@@ -35,10 +35,14 @@ from restitution.calibration.estimation.parameters import Parameter
 from restitution.calibration.estimation.rebound_model import ReboundModel
 from restitution.calibration.reading.observations import Observations
 
-SCATTER, OFFSET = "scatter", "source_offset"
+SCATTER = "scatter"
+"""Name of tau among the parameters."""
+OFFSET = "source_offset"
+"""Name of omega."""
 STUDENT = 4.0
 """Degrees of freedom of the robust option."""
 _LEAST_VARIANCE = 1e-24
+"""Of an impact without any error, so that its weight stays finite."""
 _NODES = np.linspace(-8.0, 8.0, 65)
 """Of the trapezoidal rule over an offset, in standard deviations; exact to rounding for smooth integrands."""
 _LOG_T = gammaln((STUDENT + 1) / 2) - gammaln(STUDENT / 2) - 0.5 * np.log(STUDENT * np.pi)

@@ -115,9 +115,9 @@ def maximise(
     C = np.asarray(minuit.covariance) * np.outer(slope, slope)
     intervals, ends = {}, {}
     for level, rise in (thresholds.rise if thresholds else {}).items():
-        found = [_interval(minuit, p, r) for p, r in zip(parameters, rise, strict=True)]
-        intervals[level] = np.array([interval for interval, _ in found])
-        ends[level] = np.array([open_end for _, open_end in found])
+        sides = [_interval(minuit, p, r) for p, r in zip(parameters, rise, strict=True)]
+        intervals[level] = np.array([interval for interval, _ in sides])
+        ends[level] = np.array([open_end for _, open_end in sides])
     return Maximum(parameters, values, C, lowest, minuit.nfcn, intervals, ends)
 
 
@@ -138,12 +138,12 @@ def _interval(minuit, p: Parameter, rise: float | None) -> tuple[tuple[float, fl
         return (np.nan, np.nan), (False, False)
     # MINUIT takes a confidence level; this is the one whose chi^2 quantile is the rise.
     minuit.minos(p.name, cl=float(chi2.cdf(rise, 1)))
-    found = minuit.merrors[p.name]
+    minos = minuit.merrors[p.name]
     best = minuit.values[p.name]
     ends, open_ends = [], []
     for side, valid, limit, error in (
-        (0, found.lower_valid, found.at_lower_limit, found.lower),
-        (1, found.upper_valid, found.at_upper_limit, found.upper),
+        (0, minos.lower_valid, minos.at_lower_limit, minos.lower),
+        (1, minos.upper_valid, minos.at_upper_limit, minos.upper),
     ):
         x = best + error if valid and not limit else _search(minuit, p, rise, side)
         ends.append(np.nan if x is None else x)

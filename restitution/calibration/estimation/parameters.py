@@ -86,10 +86,10 @@ class Parameter:
     def __post_init__(self) -> None:
         low, high = self.bounds
         if not low < high:
-            raise InputError(Defect("the lower bound must be below the upper one", None, None, self.name))
+            raise InputError(Defect("the lower bound must be below the upper one", field=self.name))
         if not low <= self.start <= high:
             rule = f"starts outside its bounds [{low:g}, {high:g}]"
-            raise InputError(Defect(rule, None, None, self.name, f"{self.start:g}"))
+            raise InputError(Defect(rule, field=self.name, value=f"{self.start:g}"))
 
     def inward(self, value: float) -> float:
         """The internal coordinate of a value."""

@@ -63,9 +63,9 @@ class Plan:
             parameters.append(Parameter(SCATTER, 0.03, (0.0, 1.0), "1", "even", deviation, False))
         if self.offsets if self.offsets is not None else sources > 1:
             parameters.append(Parameter(OFFSET, 0.03, (0.0, 1.0), "1", "even", deviation, False))
-        found = Likelihood(self.model, observations, tuple(parameters), fixed, separate, self.robust)
-        check_data(found)
-        return found
+        likelihood = Likelihood(self.model, observations, tuple(parameters), fixed, separate, self.robust)
+        check_data(likelihood)
+        return likelihood
 
     def _known_names(self) -> None:
         names = [p.name for p in self.model.parameters]
@@ -100,17 +100,14 @@ class Plan:
                 raise InputError(Defect("must lie above 0 and be at most 1", field="e_dry", value=f"{given:g}"))
             return None, float(given)
         if not stated.all():
-            where = o.places[int(np.argmin(stated))] if o.places else (None, None)
             rule = "is not stated: fill the column e_dry, or give --e-dry VALUE, VALUE+-SIGMA or free"
-            raise InputError(Defect(rule, *where, "e_dry"))
+            raise InputError(Defect(rule, **o.place(int(np.argmin(stated))), field="e_dry"))
         uncertain = np.isfinite(o.e_dry_sigma)
         if not uncertain.any():
             return None, o.e_dry
         if not uncertain.all():
-            where = o.places[int(np.argmin(uncertain))] if o.places else (None, None)
-            raise InputError(
-                Defect("is empty here and given in other rows: give it in all", *where, "e_dry_sigma")
-            )
+            rule = "is empty here and given in other rows: give it in all"
+            raise InputError(Defect(rule, **o.place(int(np.argmin(uncertain))), field="e_dry_sigma"))
         levels = np.unique(np.stack([o.e_dry, o.e_dry_sigma], axis=1), axis=0)
         if len(levels) == 1:
             return replace(unknown, start=levels[0, 0], prior=Normal(*map(float, levels[0]))), None
@@ -125,7 +122,7 @@ def _by_level(
     if label is None:
         return [p]
     levels, group = o.groups(label)
-    found = []
+    parameters = []
     for i, level in enumerate(levels):
         own = replace(p, name=f"{p.name}[{level}]")
         if e_dry_sigma is not None and isinstance(p.prior, Flat):
@@ -135,5 +132,5 @@ def _by_level(
                 raise InputError(Defect(rule, field="e_dry"))
             if stated:
                 own = replace(own, start=min(stated)[0], prior=Normal(*map(float, min(stated))))
-        found.append(own)
-    return found
+        parameters.append(own)
+    return parameters

@@ -22,7 +22,9 @@ from restitution.errors import InputError
 LONGER_THAN = 50
 """Autocorrelation times that a chain must have, as emcee's authors recommend."""
 STEADY = 0.05
+"""Relative change of the autocorrelation time since the last look below which it is known."""
 _LOOK = 500
+"""Steps between two looks."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Posterior:
 
 def sample(
     negative_log: Callable[[NDArray], float],
-    found: Maximum,
+    best: Maximum,
     seed: int = 0,
     most_steps: int = 20_000,
     progress: bool = False,
@@ -56,7 +58,7 @@ def sample(
     """Draws from the posterior around a maximum; raises :class:`InputError` where the chain does not converge."""
     import emcee
 
-    parameters = found.parameters
+    parameters = best.parameters
     if not parameters:
         raise InputError("there is no free parameter to sample")
     rng = np.random.default_rng(seed)
@@ -76,7 +78,7 @@ def sample(
     walkers = max(32, 4 * len(parameters) + 4)
     sampler = emcee.EnsembleSampler(walkers, len(parameters), log_probability)
     sampler.random_state = np.random.RandomState(seed).get_state()
-    position = _start(found, walkers, low, high, rng)
+    position = _start(best, walkers, low, high, rng)
     last, time = np.full(len(parameters), np.inf), np.full(len(parameters), np.inf)
     while sampler.iteration < most_steps:
         position = sampler.run_mcmc(position, _LOOK, progress=progress, skip_initial_state_check=True)
@@ -103,12 +105,12 @@ def _range(p: Parameter) -> tuple[float, float]:
     return (0.0 if p.scale == "even" else (-np.inf if low is None else low)), (np.inf if high is None else high)
 
 
-def _start(found: Maximum, walkers: int, low: NDArray, high: NDArray, rng: np.random.Generator) -> NDArray:
+def _start(best: Maximum, walkers: int, low: NDArray, high: NDArray, rng: np.random.Generator) -> NDArray:
     """Walkers around the maximum, by its standard errors, folded into the range."""
-    x = np.array([p.inward(v) for p, v in zip(found.parameters, found.values, strict=True)])
-    slope = np.array([p.slope(v) for p, v in zip(found.parameters, x, strict=True)])
+    x = np.array([p.inward(v) for p, v in zip(best.parameters, best.values, strict=True)])
+    slope = np.array([p.slope(v) for p, v in zip(best.parameters, x, strict=True)])
     reach = np.where(np.isfinite(high - low), high - low, np.inf)
-    spread = np.nan_to_num(found.sigma / np.abs(slope), nan=0.01, posinf=0.01)
+    spread = np.nan_to_num(best.sigma / np.abs(slope), nan=0.01, posinf=0.01)
     spread = np.clip(spread, 1e-6 * np.maximum(np.abs(x), 1e-3), 0.1 * reach)
     position = x + 0.5 * spread * rng.standard_normal((walkers, len(x)))
     position = np.where(position < low, 2 * low - position, position)

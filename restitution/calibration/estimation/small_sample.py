@@ -57,9 +57,9 @@ class Restriction:
         known = np.maximum(variance - tau**2, 0.0)[seen]
         J = likelihood.jacobian(values)[seen][:, mean]
         precision = prior_precision(likelihood.parameters)[mean]
-        found = cls(J, known, likelihood.sources[seen], np.diag(precision), places)
-        singular = np.linalg.cond(found.scaled(values)) > 1e12
-        return None if singular else found
+        restriction = cls(J, known, likelihood.sources[seen], np.diag(precision), places)
+        singular = np.linalg.cond(restriction.scaled(values)) > 1e12
+        return None if singular else restriction
 
     def __call__(self, values: NDArray) -> float:
         """1/2 ln of the determinant."""

@@ -106,7 +106,7 @@ def _read_csv(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
     if len(rows) > 1 and _is_axes(rows[1][1]):
         names = rows[0][1][::2]
         rows = rows[2:]
-    found: dict[str, list] = {"source": [], axes[0]: [], axes[1]: []}
+    columns: dict[str, list] = {"source": [], axes[0]: [], axes[1]: []}
     for line, cells in rows:
         for k, name in enumerate(names):
             pair = cells[2 * k : 2 * k + 2]
@@ -114,11 +114,11 @@ def _read_csv(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
                 continue  # data sets of different length leave empty cells
             for cell in pair:
                 if not NUMBER.fullmatch(cell):
-                    raise InputError(Defect("is not a number", str(path), line, name, cell))
-            found["source"].append(name)
-            found[axes[0]].append(float(pair[0]))
-            found[axes[1]].append(float(pair[1]))
-    return pd.DataFrame(found)
+                    raise InputError(Defect("is not a number", file=str(path), row=line, field=name, value=cell))
+            columns["source"].append(name)
+            columns[axes[0]].append(float(pair[0]))
+            columns[axes[1]].append(float(pair[1]))
+    return pd.DataFrame(columns)
 
 
 def _read_project(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
@@ -128,17 +128,17 @@ def _read_project(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
         content = json.loads(Path(path).read_bytes())
         project = _Project.model_validate(content.get("wpd", content) if isinstance(content, dict) else content)
     except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
+        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
     except ValidationError as error:
         raise InputError(*defects_of(error, str(path))) from None
     except ValueError as error:
-        raise InputError(Defect(f"is not JSON: {error}", str(path))) from None
+        raise InputError(Defect(f"is not JSON: {error}", file=str(path))) from None
     known = {a.name: a for a in project.axes}
     parts = []
     for dataset in project.datasets:
         if dataset.axes not in known:
             rule = f"is not the name of axes; there are: {', '.join(known) or 'none'}"
-            raise InputError(Defect(rule, str(path), None, f"{dataset.name}.axesName", dataset.axes))
+            raise InputError(Defect(rule, file=str(path), field=f"{dataset.name}.axesName", value=dataset.axes))
         pixels = np.array([(p.x, p.y) for p in dataset.data]).reshape(-1, 2)
         x, y, x_sigma, y_sigma = _values(known[dataset.axes], pixels, str(path))
         parts.append(
@@ -153,7 +153,7 @@ def _read_project(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
             )
         )
     if not parts or not sum(map(len, parts)):
-        raise InputError(Defect("has no points", str(path)))
+        raise InputError(Defect("has no points", file=str(path)))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -165,13 +165,13 @@ def _values(axes: _Axes, pixels: np.ndarray, file: str) -> tuple[np.ndarray, ...
         a, b = np.array([a[0], 0.0]), np.array([0.0, b[1]])
     basis = np.stack([a, b], axis=1)
     if abs(np.linalg.det(basis)) < 1e-9:
-        raise InputError(Defect("the calibration points lie on one line", file, None, axes.name))
+        raise InputError(Defect("the calibration points lie on one line", file=file, field=axes.name))
     result, errors = [], []
     for k, (origin, key, logarithmic) in enumerate(((X1, "dx", axes.log_x), (Y1, "dy", axes.log_y))):
         ends = [getattr(p, key) for p in axes.points[2 * k : 2 * k + 2]]
         if None in ends or ends[0] == ends[1] or (logarithmic and min(ends) <= 0):
             rule = "needs two calibration points of different" + (", positive" * logarithmic) + " value"
-            raise InputError(Defect(rule, file, None, f"{axes.name}, {key[1]} axis"))
+            raise InputError(Defect(rule, file=file, field=f"{axes.name}, {key[1]} axis"))
         low, high = (math.log(e) for e in ends) if logarithmic else ends
         inverse = np.linalg.inv(basis)[k]
         value = low + (pixels - origin) @ inverse * (high - low)

@@ -38,12 +38,14 @@ _SIGMAS = ("e_eff_sigma", "stokes_sigma", "e_dry_sigma", "impact_speed_sigma_m_s
 class TableCheck:
     """The rules on one table; ``defects`` gathers what breaks them, no cell twice.
 
-    ``rows`` are the lines of the file; ``found`` defects of the table's form, the cells they name being empty.
+    ``rows`` are the lines of the file; in ``form_defects``, those of the table's form, the named cells are empty.
     """
 
-    def __init__(self, table: pd.DataFrame, how: Reading, file: str, rows: Sequence[int], found: Iterable[Defect]):
+    def __init__(
+        self, table: pd.DataFrame, how: Reading, file: str, rows: Sequence[int], form_defects: Iterable[Defect]
+    ):
         self.table, self.how, self.file, self.rows = table, how, file, rows
-        self.defects = list(found)
+        self.defects = list(form_defects)
         self._named = {(d.row, d.field) for d in self.defects}
         # Where a column is misnamed, its empty cells are no further defects.
         self._complete = not any(d.row == 1 for d in self.defects)
@@ -53,7 +55,7 @@ class TableCheck:
         own = None if name is None else self.how.columns.get(name, name)
         if row is None or (row, own) not in self._named:
             self._named.add((row, own))
-            self.defects.append(Defect(rule, self.file, row, own, value))
+            self.defects.append(Defect(rule, file=self.file, row=row, field=own, value=value))
 
     def _add_all(self, rule: str, where: np.ndarray, name: str, values: Any = None) -> None:
         for i in np.flatnonzero(where):
@@ -67,7 +69,9 @@ class TableCheck:
         first, at = stated.iloc[0], stated.index[0]
         if given is not None and given != first:
             rule = f"the file states another: {first!r}"
-            self.defects.append(Defect(rule, self.file, int(self.rows[at]), option, str(given)))
+            self.defects.append(
+                Defect(rule, file=self.file, row=int(self.rows[at]), field=option, value=str(given))
+            )
         for i, value in stated.items():
             if value != first:
                 rule = f"differs from {first!r} in row {self.rows[at]}: one file has one definition; split it"
@@ -122,7 +126,7 @@ class TableCheck:
 def check_physical(o: Observations, how: Reading) -> Observations:
     """The same impacts of one's own tracks; refuses those whose e_eff is not physical, unless that is waived."""
     outside = np.flatnonzero(_outside(o.e)) if not how.unphysical else ()
-    defects = [Defect(_UNPHYSICAL, *o.places[i], "e_eff", f"{o.e[i]:g}") for i in outside]
+    defects = [Defect(_UNPHYSICAL, **o.place(i), field="e_eff", value=f"{o.e[i]:g}") for i in outside]
     if defects:
         raise InputError(*defects)
     return o

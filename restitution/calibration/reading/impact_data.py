@@ -44,7 +44,7 @@ def read(paths: str | Path | Sequence[str | Path], how: Reading | None = None, *
         for name, digest in part.files.items():
             if digest in seen:
                 defects.append(
-                    Defect(f"has the same content as {seen[digest]}: its impacts would count twice", name)
+                    Defect(f"has the same content as {seen[digest]}: its impacts would count twice", file=name)
                 )
             seen[digest] = name
     if defects:
@@ -59,7 +59,7 @@ def _read_one(path: str, how: Reading) -> Observations:
             digest = resource.hash.removeprefix("sha256:")
             conditions = how.conditions or resource.conditions
             return from_track(datasets.load_track(path), conditions, how, path, digest)
-        raise InputError(Defect("does not exist, and no shipped record has this name", path))
+        raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
     if is_export(path):
         return _from_export(path, how, _digest(path))
     if is_track(read_header(path), how):
@@ -72,18 +72,18 @@ def _read_one(path: str, how: Reading) -> Observations:
 def _from_export(path: str, how: Reading, digest: str) -> Observations:
     """The points of a digitised plot, each data set a source."""
     _known_columns(dict(zip(how.axes, ("--x", "--y"), strict=True)))
-    found = from_table(read_export(path, how.axes), replace(how, columns={}), path, digest)
+    points = from_table(read_export(path, how.axes), replace(how, columns={}), path, digest)
     if not path.endswith(".json"):
-        return found
+        return points
     note = f"{path}: errors are those of a click, {PIXEL:g} pixel; those of the measurement are in the scatter"
-    return replace(found, notes=(*found.notes, note))
+    return replace(points, notes=(*points.notes, note))
 
 
 def _known_columns(given: Mapping[str, str]) -> None:
     """Refuse names that are no columns of the schema, each given by the option that is its value."""
     known = read_schema(SCHEMA).columns
     rule = f"is not a column that a fit uses; known: {', '.join(known)}"
-    defects = [Defect(rule, None, None, option, name) for name, option in given.items() if name not in known]
+    defects = [Defect(rule, field=option, value=name) for name, option in given.items() if name not in known]
     if defects:
         raise InputError(*defects)
 

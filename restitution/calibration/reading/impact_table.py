@@ -27,12 +27,12 @@ SCHEMA = Path(__file__).with_name("measurement.json")
 
 
 def from_table(
-    table: pd.DataFrame, how: Reading, file: str, digest: str, found: Iterable[Defect] = ()
+    table: pd.DataFrame, how: Reading, file: str, digest: str, form_defects: Iterable[Defect] = ()
 ) -> Observations:
     """Observations of a table that has some of the columns of the schema; raises with all that is wrong in it.
 
-    Rows of the file are its index if that is called ``row``, else they count from 2. ``found`` are defects of the
-    table's form, to be named with the others.
+    Rows of the file are its index if that is called ``row``, else they count from 2. ``form_defects`` are those
+    of the table's form, to be named with the others.
     """
     rows = table.index.to_numpy() if table.index.name == "row" else np.arange(len(table)) + 2
     table = table.reindex(columns=list(dict.fromkeys([*read_schema(SCHEMA).columns, *table.columns])))
@@ -42,7 +42,7 @@ def from_table(
     table, rows = table[use].reset_index(drop=True), rows[use]
     per_row = _row_conditions(table, how)
     none = table["outcome"].isin(WITHOUT_REBOUND).to_numpy(bool)
-    check = TableCheck(table, how, file, rows, found)
+    check = TableCheck(table, how, file, rows, form_defects)
     check.errors()
     speed, stokes = check.speed(), check.stokes(per_row)
     e = _restitution(table)

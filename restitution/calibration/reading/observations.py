@@ -148,6 +148,10 @@ class Observations(Showing):
             places=tuple(self.places[i] for i in index) if self.places else (),
         )
 
+    def place(self, i: int) -> dict[str, Any]:
+        """File and row of impact ``i``, as a defect names them; nothing of impacts that come from no file."""
+        return dict(zip(("file", "row"), self.places[i], strict=True)) if self.places else {}
+
     def ratio_to(self, convention: str) -> NDArray:
         """St of another convention over the St here, impact by impact; raises where conditions are needed."""
         known: dict[int, float] = {}
@@ -159,9 +163,8 @@ class Observations(Showing):
                     known[key] = StokesNumber(1.0, self.convention, self.speed).to(convention, conditions).value
                 except ConventionError as error:
                     columns = "fluid_density_kg_m3, fluid_viscosity_Pa_s, sphere_diameter_m, sphere_density_kg_m3"
-                    file, row = self.places[i] if self.places else (None, None)
                     rule = f"{error} (the columns {columns}, or --conditions FILE)"
-                    raise ConventionError(Defect(rule, file, row)) from None
+                    raise ConventionError(Defect(rule, **self.place(i))) from None
             ratio[i] = known[key]
         return ratio
 
@@ -199,13 +202,13 @@ def join(parts: list[Observations]) -> Observations:
             kinds = ["measured", "simulated"]
             here, there = kinds[other.simulated], kinds[first.simulated]
             rule = f"has {here} impacts, the first file {there} ones: fit them apart"
-            raise InputError(Defect(rule, next(iter(other.files), None), field="kind"))
+            raise InputError(Defect(rule, file=next(iter(other.files), None), field="kind"))
         for what in ("convention", "speed"):
             if getattr(other, what) != getattr(first, what):
                 file = next(iter(other.files), None)
                 rule = f"{what} differs from {getattr(first, what)} of {next(iter(first.files), 'the first file')}"
                 raise InputError(
-                    Defect(f"{rule}: fit data of one definition", file, value=str(getattr(other, what)))
+                    Defect(f"{rule}: fit data of one definition", file=file, value=str(getattr(other, what)))
                 )
     names = dict.fromkeys(name for part in parts for name in part.labels)
     labels = {

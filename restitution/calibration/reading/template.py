@@ -56,7 +56,7 @@ def write_template(folder: Path) -> list[str]:
     """Write the example; refuses to replace a file. Returns what to tell the user."""
     for name in NAMES:
         if (folder / name).exists():
-            raise InputError(Defect("exists already; a template replaces nothing", str(folder / name)))
+            raise InputError(Defect("exists already; a template replaces nothing", file=str(folder / name)))
     write_folder(folder, template())
     return [
         f"{folder / 'impacts.csv'}: a table of impacts to replace by your own",

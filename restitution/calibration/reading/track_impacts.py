@@ -23,8 +23,8 @@ QUANTITIES = {"gap_m": "trajectory", "velocity_m_s": "settling"}
 
 def is_track(header: list[str], how: Reading) -> bool:
     """Whether a table is a track: it has the time, and either the gap or the velocity."""
-    found = {how.columns.get(name, name) for name in ("time_s", *QUANTITIES)} & set(header)
-    return len(found) == 2 and how.columns.get("time_s", "time_s") in found
+    names = {how.columns.get(name, name) for name in ("time_s", *QUANTITIES)} & set(header)
+    return len(names) == 2 and how.columns.get("time_s", "time_s") in names
 
 
 def from_track_file(path: str, how: Reading, digest: str) -> Observations:
@@ -45,21 +45,23 @@ def track_of(path: str, how: Reading) -> tuple[Track, Conditions]:
 def from_track(track: Track, conditions: Conditions, how: Reading, name: str, digest: str) -> Observations:
     """The impacts of one track under the stated definition of speed, which must be far, contact or window."""
     if how.speed is None:
-        raise InputError(Defect(NO_SPEED, name))
+        raise InputError(Defect(NO_SPEED, file=name))
     if how.speed not in MEASURED_SPEEDS:
         raise InputError(
-            Defect("a track gives the far, contact or window speed", name, None, "--speed", str(how.speed))
+            Defect(
+                "a track gives the far, contact or window speed", file=name, field="--speed", value=str(how.speed)
+            )
         )
     stokes = how.stokes or "st"
-    found = find_impacts(track, conditions, how.speed, stokes, Path(name).stem)
-    if not found.rows:
-        raise InputError(Defect("no impact is resolved in this track", name))
+    impacts = find_impacts(track, conditions, how.speed, stokes, Path(name).stem)
+    if not impacts.rows:
+        raise InputError(Defect("no impact is resolved in this track", file=name))
     o = Observations.from_impacts(
-        found.rows,
+        impacts.rows,
         conditions,
-        places=tuple((f"{name}, impact", int(row["impact"])) for row in found.rows),
+        places=tuple((f"{name}, impact", int(row["impact"])) for row in impacts.rows),
         files={name: digest},
-        notes=tuple(f"{name}: {note}" for note in found.notes),
+        notes=tuple(f"{name}: {note}" for note in impacts.notes),
     )
     return check_physical(o, how)
 
@@ -70,10 +72,10 @@ def _conditions_of_track(path: str) -> Conditions:
     needed = (*CONDITIONS, "e_dry")
     if not set(needed) <= set(header):
         rule = f"is a track; fluid and sphere are needed: --conditions FILE, or the columns {', '.join(needed)}"
-        raise InputError(Defect(rule, path))
+        raise InputError(Defect(rule, file=path))
     table = read_table(path, read_schema(SCHEMA), {name: name for name in needed})
     for name in needed:
         if table[name].nunique(dropna=False) != 1:
             row = int((table[name] != table[name].iloc[0]).to_numpy().argmax()) + 2
-            raise InputError(Defect("must be the same in all rows of a track", path, row, name))
+            raise InputError(Defect("must be the same in all rows of a track", file=path, row=row, field=name))
     return conditions_of_row(table.iloc[0])

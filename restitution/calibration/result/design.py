@@ -63,7 +63,7 @@ def candidates(path: str | Path = PAIRS, heights: tuple[float, ...] = (0.01, 0.0
 
     Of falls that end at the same speed only the lowest is taken.
     """
-    found: list[Candidate] = []
+    options: list[Candidate] = []
     for row in read_table(path, read_schema(_SCHEMA)).itertuples():
         fluid = Fluid(density=row.fluid_density_kg_m3, viscosity=row.fluid_viscosity_Pa_s)
         e_dry = None if np.isnan(row.e_dry) else row.e_dry
@@ -71,14 +71,14 @@ def candidates(path: str | Path = PAIRS, heights: tuple[float, ...] = (0.01, 0.0
         conditions = Conditions(fluid=fluid, sphere=sphere)
         name = f"{row.sphere} {row.sphere_diameter_m * 1e3:g} mm"
         if not np.isnan(row.impact_speed_m_s):
-            found.append(Candidate(row.fluid, name, conditions, row.impact_speed_m_s))
+            options.append(Candidate(row.fluid, name, conditions, row.impact_speed_m_s))
             continue
         fastest = 0.0
         for height in sorted(heights):
             if (v := fall_speed(conditions, height)) > (1 + SAME_SPEED) * fastest:
-                found.append(Candidate(row.fluid, name, conditions, v, height))
+                options.append(Candidate(row.fluid, name, conditions, v, height))
                 fastest = v
-    return found
+    return options
 
 
 @dataclass(frozen=True)

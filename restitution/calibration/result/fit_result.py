@@ -192,24 +192,24 @@ def chain_of(posterior: Posterior) -> Chain:
 
 def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
     """The record of a fit."""
-    likelihood, found, o = fit.likelihood, fit.maximum, fit.likelihood.observations
+    likelihood, maximum, o = fit.likelihood, fit.maximum, fit.likelihood.observations
     model = likelihood.model
     named = isinstance(model, LawModel)
-    sigma = found.sigma
+    sigma = maximum.sigma
     estimated = tuple(
         Estimated(
             name=p.name,
-            value=float(found.values[j]),
+            value=float(maximum.values[j]),
             sigma=number_or_none(sigma[j]),
             unit=p.unit,
             bounds=p.bounds,
             prior=str(p.prior),
             mean=p.mean,
-            intervals={f"{level:.0%}": tuple(map(float, found.intervals[level][j])) for level in LEVELS},
-            open_ends={f"{level:.0%}": tuple(map(bool, found.open_ends[level][j])) for level in LEVELS},
+            intervals={f"{level:.0%}": tuple(map(float, maximum.intervals[level][j])) for level in LEVELS},
+            open_ends={f"{level:.0%}": tuple(map(bool, maximum.open_ends[level][j])) for level in LEVELS},
             degrees_of_freedom=number_or_none(fit.freedom[j]),
         )
-        for j, p in enumerate(found.parameters)
+        for j, p in enumerate(maximum.parameters)
     )
     fixed = {name: float(v) for name, v in likelihood.fixed.items() if np.ndim(v) == 0}
     e_dry, ratio = o.e_dry[np.isfinite(o.e_dry)], o.ratio_to(model.convention)
@@ -228,8 +228,8 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         fixed=fixed,
         separate=dict(likelihood.separate),
         parameters=estimated,
-        covariance=tuple(tuple(number_or_none(x) for x in row) for row in found.covariance),
-        offsets=likelihood.offsets(found.values) if OFFSET in [p.name for p in found.parameters] else {},
+        covariance=tuple(tuple(number_or_none(x) for x in row) for row in maximum.covariance),
+        offsets=likelihood.offsets(maximum.values) if OFFSET in [p.name for p in maximum.parameters] else {},
         goodness=goodness_of(fit),
         stokes_range=(float(o.St[told].min()), float(o.St[told].max())),
         law_stokes_ratio=(float(ratio.min()), float(ratio.max())),

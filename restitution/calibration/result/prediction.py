@@ -161,11 +161,11 @@ def quantile(level: float, freedom: float) -> float:
 
 def _half_width(result: FitResult, name: str, level: float) -> float:
     """Of the scatter or the source offset of one more impact; 0 where it was not estimated, or is 0."""
-    found = next((p for p in result.parameters if p.name == name), None)
-    if found is None or not found.value > 0:
+    deviation = next((p for p in result.parameters if p.name == name), None)
+    if deviation is None or not deviation.value > 0:
         return 0.0
-    freedom = 1.0 if found.sigma is None else max(0.5 * (found.value / found.sigma) ** 2, 1.0)
-    return found.value * quantile(level, freedom)
+    freedom = 1.0 if deviation.sigma is None else max(0.5 * (deviation.value / deviation.sigma) ** 2, 1.0)
+    return deviation.value * quantile(level, freedom)
 
 
 def _ratio(result: FitResult, convention: str, conditions: Conditions | None) -> float:
@@ -201,17 +201,17 @@ def _from_draws(
 
 
 def _warnings(result: FitResult, St: NDArray, e_dry: float) -> tuple[str, ...]:
-    found = []
+    warnings = []
     low, high = result.stokes_range
     outside = St[(St < low) | (St > high)]
     if len(outside):
         shown = f"{outside.min():.4g}" + (f" to {outside.max():.4g}" if len(outside) > 1 else "")
-        found.append(
+        warnings.append(
             f"St {shown} lies outside the calibrated range {low:.4g} to {high:.4g}: the interval does not say how "
             "wrong the law may be there"
         )
     least, most = result.e_dry_range
     estimated = any(p.name.startswith("e_dry") for p in result.parameters)
     if not estimated and not least - 0.02 <= e_dry <= most + 0.02:
-        found.append(f"e_dry {e_dry:g} lies outside that of the calibration, {least:g} to {most:g}")
-    return tuple(found)
+        warnings.append(f"e_dry {e_dry:g} lies outside that of the calibration, {least:g} to {most:g}")
+    return tuple(warnings)

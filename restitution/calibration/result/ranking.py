@@ -28,8 +28,12 @@ from restitution.calibration.reading.observations import Observations
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.errors import ConventionError, InputError
 
-LEAST_DIFFERENCE, STANDARD_ERRORS = 4.0, 2.0
+LEAST_DIFFERENCE = 4.0
+"""Difference in elpd below which two laws are not separated, whatever its error."""
+STANDARD_ERRORS = 2.0
+"""In standard errors of the difference, the same."""
 REPLICATES = 1000
+"""Data drawn for the predictive check."""
 
 
 @dataclass(frozen=True)

@@ -14,17 +14,19 @@ from restitution.calibration.estimation.fitting import Fit
 if TYPE_CHECKING:
     from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory
 
-SCALES, NOISES = 3.0, 5.0
-"""From which on they show: scale in its prior standard deviations, correlated noise in errors of reading."""
+SCALES = 3.0
+"""Standard deviations of its prior from which on a scale is a doubt."""
+NOISES = 5.0
+"""Errors of reading from which on the correlated noise is one."""
 
 
-def in_words(found: Sequence[WholeTrajectory], fit: Fit, slopes: Fit | str) -> list[str]:
+def in_words(trajectories: Sequence[WholeTrajectory], fit: Fit, slopes: Fit | str) -> list[str]:
     """Everything that is doubtful; nothing where nothing is."""
-    return [*_records(found), *_parameters(fit, slopes), *_bounces(found)]
+    return [*_records(trajectories), *_parameters(fit, slopes), *_bounces(trajectories)]
 
 
-def _records(found: Sequence[WholeTrajectory]) -> Iterator[str]:
-    for t in found:
+def _records(trajectories: Sequence[WholeTrajectory]) -> Iterator[str]:
+    for t in trajectories:
         r = t.recording
         scale, _ = t.unknowns["scale"]
         if abs(scale - 1) > SCALES * r.scale:
@@ -55,9 +57,9 @@ def _parameters(fit: Fit, slopes: Fit | str) -> Iterator[str]:
             )
 
 
-def _bounces(found: Sequence[WholeTrajectory]) -> Iterator[str]:
+def _bounces(trajectories: Sequence[WholeTrajectory]) -> Iterator[str]:
     """Bounces that are modelled but tell no e outside the film."""
-    for t in found:
+    for t in trajectories:
         within = [f"{n + 1}" for n, outside in enumerate(t.outside()) if not outside]
         if within:
             yield (

@@ -35,7 +35,7 @@ class Measured:
     """Records turned into impacts, with the wake of the approach and without."""
 
     records: tuple[Recording, ...]
-    found: dict[bool, list[WholeTrajectory]] = field(default_factory=dict)
+    trajectories: dict[bool, list[WholeTrajectory]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, records: Sequence[Recording], wakes: Sequence[bool] = (False, True)) -> Measured:
@@ -44,24 +44,24 @@ class Measured:
 
     def preference(self) -> float:
         """Ln of the evidence with wake over that without, all records; 0 where one of them was not asked for."""
-        if len(self.found) < 2:
+        if len(self.trajectories) < 2:
             return 0.0
-        with_wake, without = (sum(t.log_evidence for t in self.found[w]) for w in (True, False))
+        with_wake, without = (sum(t.log_evidence for t in self.trajectories[w]) for w in (True, False))
         return with_wake - without
 
     @property
     def preferred(self) -> bool:
         """Whether the frames prefer the wake; of what was asked for."""
-        return self.preference() > 0 if len(self.found) == 2 else next(iter(self.found))
+        return self.preference() > 0 if len(self.trajectories) == 2 else next(iter(self.trajectories))
 
 
-def observations(found: Sequence[WholeTrajectory], how: Reading) -> Observations:
+def observations(trajectories: Sequence[WholeTrajectory], how: Reading) -> Observations:
     """The impacts of the records for a fit, each record a source."""
-    rows = [row for t in found for row in t.rows(how.stokes or "st")]
+    rows = [row for t in trajectories for row in t.rows(how.stokes or "st")]
     if not any(row["outcome"] == "rebound" for row in rows):
         rule = "no bounce leaves the film, 0.1 d: nothing to fit a law to"
-        raise InputError(*(Defect(rule, t.recording.name) for t in found))
-    records = {t.recording.name: t.recording for t in found}
+        raise InputError(*(Defect(rule, file=t.recording.name) for t in trajectories))
+    records = {t.recording.name: t.recording for t in trajectories}
     o = Observations.from_impacts(
         rows,
         [records[row["record"]].conditions for row in rows],
@@ -109,21 +109,21 @@ class TrajectoryFit:
     slopes: Fit | str
 
     @property
-    def found(self) -> list[WholeTrajectory]:
+    def trajectories(self) -> list[WholeTrajectory]:
         """The records under the model that the fit is based on."""
-        return self.measured.found[self.wake]
+        return self.measured.trajectories[self.wake]
 
     def result(self) -> FitResult:
         """What is kept: the fit, and beside it every record's unknowns, noise and distances."""
         base = result_of(self.fit)
-        records = tuple(self._record(t) for t in self.found)
-        notes = [*base.notes, self.wake_in_words(), *in_words(self.found, self.fit, self.slopes)]
+        records = tuple(self._record(t) for t in self.trajectories)
+        notes = [*base.notes, self.wake_in_words(), *in_words(self.trajectories, self.fit, self.slopes)]
         return base.model_copy(update={"trajectories": records, "notes": tuple(notes)})
 
     def wake_in_words(self) -> str:
         """Which model the frames prefer."""
         gain, used = self.measured.preference(), "with" if self.wake else "without"
-        if len(self.measured.found) < 2:
+        if len(self.measured.trajectories) < 2:
             return f"model {used} the wake of the approach, as asked for"
         better = "with" if gain > 0 else "without"
         clear = "" if abs(gain) > CLEAR else " (not clearly)"
@@ -134,7 +134,9 @@ class TrajectoryFit:
 
     def _record(self, t: WholeTrajectory) -> TrajectoryRecord:
         path, rms, apex = distance_d(t, closures_of(self.fit, self.wake))
-        other = next((x for x in self.measured.found.get(not self.wake, []) if x.recording is t.recording), None)
+        other = next(
+            (x for x in self.measured.trajectories.get(not self.wake, []) if x.recording is t.recording), None
+        )
         return TrajectoryRecord(
             record=t.recording.name,
             wake=self.wake,
@@ -157,7 +159,7 @@ class TrajectoryFit:
 def fit_law(measured: Measured, plan: Plan, how: Reading, wake: bool | None = None) -> TrajectoryFit:
     """A law fitted to the records under the model that they prefer, or with the wake or without as said."""
     wake = measured.preferred if wake is None else wake
-    fit = law_fit(plan, observations(measured.found[wake], how))
+    fit = law_fit(plan, observations(measured.trajectories[wake], how))
     try:
         slopes: Fit | str = law_fit(plan, slope_observations(measured.records, how))
     except InputError as error:

@@ -38,11 +38,16 @@ from restitution.calibration.trajectories.unknowns import Unknowns, priors
 
 SIGMA_U = (0.1, 0.3)
 """Range of the prior of sigma_u: from this part of the reading error to this part of a diameter."""
-_COARSE, _FINE = (12, 7), (11, 9)
+_COARSE = (12, 7)
+"""Nodes of the first grid over the noise, in ln(sigma_u) and ln(tau)."""
+_FINE = (11, 9)
+"""Nodes of those about the most probable part of it."""
 _MOST_STEPS = 25
+"""Of the search for the most probable unknowns."""
 _SETTLED = 1e-3
 """A step of the search that is this part of a standard deviation ends it."""
 _NEGLIGIBLE = 1e-4
+"""Density over the greatest below which a node of the noise is left out of the next grid."""
 
 
 @dataclass(frozen=True)
@@ -205,7 +210,7 @@ class RecordLikelihood:
         """Eta of greatest probability at the most probable noise; residual and d f/d eta there."""
         r, node, sigma = self.recording, [self.noise.at], self.prior[1]
         su, tau = self.noise.sigma_u[node], self.noise.tau[node]
-        best, found, step = np.inf, (self.eta, np.empty(0)), np.zeros_like(self.eta)
+        best, probable, step = np.inf, (self.eta, np.empty(0)), np.zeros_like(self.eta)
         eta = self.eta
         for _ in range(_MOST_STEPS):
             values = self.values(eta)
@@ -215,29 +220,31 @@ class RecordLikelihood:
             self._add_rest(gram, self.named(values).zero)
             away = gram[0, 0, 0] + eta @ eta
             if away < best:
-                best, found = away, (eta, columns)
+                best, probable = away, (eta, columns)
                 M = gram[0, 1:, 1:] + np.eye(len(eta))
                 step = np.linalg.solve(M, gram[0, 1:, 0] - eta)
             else:  # past a contact the linear model overshoots
                 step = 0.5 * step
             if step @ M @ step < _SETTLED**2:
                 break
-            eta = found[0] + step
-        return found
+            eta = probable[0] + step
+        return probable
 
     def settled(self) -> RecordLikelihood:
         """The same about the noise and the unknowns that are most probable."""
         prior = noise_prior(self.recording)
-        found, box = self, prior
+        current, box = self, prior
         for shape in (_COARSE, _FINE, _FINE):
             noise = Noise.grid(prior, box, shape)
-            was = found.noise.sigma_u[found.noise.at], found.noise.tau[found.noise.at]
+            was = current.noise.sigma_u[current.noise.at], current.noise.tau[current.noise.at]
             away = np.abs(np.log(noise.sigma_u / was[0])) + np.abs(np.log(noise.tau / was[1]))
-            found = replace(found, noise=replace(noise, at=int(np.argmin(away))))
-            m = found.marginal()
-            found = replace(found, noise=replace(noise, at=int(np.argmax(m.nodes - noise.log_weight))), eta=m.eta)
+            current = replace(current, noise=replace(noise, at=int(np.argmin(away))))
+            m = current.marginal()
+            current = replace(
+                current, noise=replace(noise, at=int(np.argmax(m.nodes - noise.log_weight))), eta=m.eta
+            )
             box = _around(noise, m.nodes, prior)
-        return replace(found, eta=found.marginal().eta)
+        return replace(current, eta=current.marginal().eta)
 
 
 def _around(noise: Noise, nodes: NDArray, prior: NDArray) -> NDArray:

@@ -14,27 +14,36 @@ from restitution.errors import Defect, InputError
 from restitution.stokes import StokesNumber
 from restitution.tracks import DETECTION, Contacts, Track
 
-LEAST_FRAMES, LEAST_RISE_D, BELOW_D, CENTRE = 8, 0.02, 0.02, 0.2
-"""Frames; in diameters the rise of at least one bounce, how far noise reaches below the wall, the lowest gap."""
+LEAST_FRAMES = 8
+LEAST_RISE_D = 0.02
+"""Rise of at least one bounce, in diameters."""
+BELOW_D = 0.02
+"""How far below the wall noise may put the first frame, in diameters."""
+CENTRE_D = 0.2
+"""A record that never comes nearer to the wall, in diameters, has the height of the centre in place of the gap."""
 SPEEDS = (0.02, 20.0)
 """Between which parts of the terminal speed a record's fastest frames must be; a wrong unit is out by 1000."""
 
 
-def check(name: str, track: Track, found: Contacts, conditions: Conditions) -> None:
+def check(name: str, track: Track, contacts: Contacts, conditions: Conditions) -> None:
     """Refuse what cannot be a bouncing sphere's gap in metres."""
     excess_weight(conditions)
     d, terminal = conditions.sphere.diameter, terminal_speed(conditions)
     if track.quantity != "gap":
-        raise InputError(Defect("has velocities; a fit to trajectories needs gaps", name, None, "velocity_m_s"))
+        raise InputError(
+            Defect("has velocities; a fit to trajectories needs gaps", file=name, field="velocity_m_s")
+        )
     if conditions.sphere.e_dry is None:
-        raise InputError(Defect("must be stated: the rebound needs a dry restitution", name, None, "sphere.e_dry"))
+        raise InputError(
+            Defect("must be stated: the rebound needs a dry restitution", file=name, field="sphere.e_dry")
+        )
     if len(track.time_s) < LEAST_FRAMES:
         rule = f"has {len(track.time_s)} frames; a trajectory needs at least {LEAST_FRAMES}"
-        raise InputError(Defect(rule, name))
+        raise InputError(Defect(rule, file=name))
     if expected_reynolds(conditions, 0.0) > GREATEST_RE:
         St = StokesNumber.from_speed(terminal, conditions).value
         rule = f"makes the sphere fall at {terminal:.2g} m/s, St = {St:.2g}: in millimetres?"
-        raise InputError(Defect(rule, name, None, "sphere.diameter", f"{d:g}"))
+        raise InputError(Defect(rule, file=name, field="sphere.diameter", value=f"{d:g}"))
     speeds = np.abs(np.diff(track.value) / np.diff(track.time_s))
     fastest = float(np.quantile(speeds, 0.95))
     if not SPEEDS[0] * terminal < fastest < SPEEDS[1] * terminal:
@@ -44,22 +53,24 @@ def check(name: str, track: Track, found: Contacts, conditions: Conditions) -> N
             f"moves at {fastest:.3g} m/s, St = {St:.2g}, where this sphere falls at {terminal:.2g} m/s at most, "
             f"St = {expected:.2g}: are gap and diameter in metres, time in seconds?"
         )
-        raise InputError(Defect(rule, name, row, "gap_m", f"{track.value[row - 2]:g}"))
-    if (found.level or 0.0) < -CENTRE * d:
-        rule = f"comes to rest {-found.level / d:.2g} d below the wall: is the gap zero where they touch?"
-        raise InputError(Defect(rule, name, None, "gap_m", f"{found.level:g}"))
+        raise InputError(Defect(rule, file=name, row=row, field="gap_m", value=f"{track.value[row - 2]:g}"))
+    if (contacts.level or 0.0) < -CENTRE_D * d:
+        rule = f"comes to rest {-contacts.level / d:.2g} d below the wall: is the gap zero where they touch?"
+        raise InputError(Defect(rule, file=name, field="gap_m", value=f"{contacts.level:g}"))
     if track.value[0] < -max(DETECTION * track.sigma, BELOW_D * d):
-        raise InputError(Defect("starts below the wall", name, 2, "gap_m", f"{track.value[0]:g}"))
-    if not _rises(track, found, d):
+        raise InputError(
+            Defect("starts below the wall", file=name, row=2, field="gap_m", value=f"{track.value[0]:g}")
+        )
+    if not _rises(track, contacts, d):
         rule = f"has no bounce that rises by {LEAST_RISE_D:g} d: nothing to fit (is all in m, kg, s?)"
-        raise InputError(Defect(rule, name))
+        raise InputError(Defect(rule, file=name))
     lowest = int(np.argmin(track.value))
-    if track.value[lowest] > CENTRE * d:
+    if track.value[lowest] > CENTRE_D * d:
         rule = (
             f"is the lowest of the record, {track.value[lowest] / d:.2g} d above the wall: is it the height of "
             "the centre? The gap is that of the lowest point, less by d/2"
         )
-        raise InputError(Defect(rule, name, lowest + 2, "gap_m", f"{track.value[lowest]:g}"))
+        raise InputError(Defect(rule, file=name, row=lowest + 2, field="gap_m", value=f"{track.value[lowest]:g}"))
 
 
 def begins_rising(track: Track) -> bool:
@@ -67,15 +78,15 @@ def begins_rising(track: Track) -> bool:
     return bool(track.value[2] > track.value[0])
 
 
-def bounces(track: Track, found: Contacts) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def bounces(track: Track, contacts: Contacts) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """When the sphere bounced, to a frame (nan where that was not filmed), and by how much it then rose in m."""
     touches = [(math.nan, 0)] if begins_rising(track) else []
-    touches += [(float(track.time_s[c.nearest]), c.nearest) for c in found.contacts if c.nearest is not None]
+    touches += [(float(track.time_s[c.nearest]), c.nearest) for c in contacts.contacts if c.nearest is not None]
     begins = [i for _, i in touches]
     ends = [*begins[1:], len(track.value)][: len(begins)]
     rises = [np.max(track.value[i:j]) - track.value[i] for i, j in zip(begins, ends, strict=True)]
     return tuple(t for t, _ in touches), tuple(map(float, rises))
 
 
-def _rises(track: Track, found: Contacts, d: float) -> bool:
-    return max(bounces(track, found)[1], default=0.0) > LEAST_RISE_D * d
+def _rises(track: Track, contacts: Contacts, d: float) -> bool:
+    return max(bounces(track, contacts)[1], default=0.0) > LEAST_RISE_D * d

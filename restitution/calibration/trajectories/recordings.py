@@ -36,10 +36,20 @@ from restitution.stokes import H_FILM
 from restitution.tables.reading import read_header
 from restitution.tracks import Track, contacts
 
-SCALE, LEVEL_D = 0.01, 0.01
-"""Standard deviations where none is stated: relative error of the scale of length; zero of the gap in d."""
-STEADY, UNSEEN, STILL_FALLING = 0.05, 0.3, 0.7
-_RUN_UP = 5.0
+SCALE = 0.01
+"""Relative standard deviation of the scale of length where none is stated."""
+LEVEL_D = 0.01
+"""Standard deviation of the zero of the gap where none is stated, in diameters."""
+STEADY = 0.05
+"""Relative standard deviation of the speed of a steady fall about its mean over the approach."""
+STILL_FALLING = 0.7
+"""A sphere that is slower than this part of its terminal speed at the first frames was released at rest."""
+FIRST_E = 0.75
+"""Restitution that an impact which nobody filmed is taken to have had, to guess its speed from the rebound's."""
+UNSEEN = 0.3
+"""Relative standard deviation of such a guess."""
+_RUN_UP_D = 5.0
+"""Gap, in diameters, at which the model starts where the record begins on a rebound."""
 
 
 @dataclass(frozen=True)
@@ -102,15 +112,15 @@ class Recording:
 
 def read_recordings(paths: Sequence[str], how: Reading) -> list[Recording]:
     """All records; raises :class:`InputError` with what is wrong in each."""
-    found, defects = [], []
+    records, defects = [], []
     for path in dict.fromkeys(map(str, paths)):
         try:
-            found.append(read_recording(path, how))
+            records.append(read_recording(path, how))
         except InputError as error:
             defects += [d if d.file else replace(d, file=path) for d in error.defects]
     if defects:
         raise InputError(*defects)
-    return found
+    return records
 
 
 def read_recording(path: str, how: Reading) -> Recording:
@@ -120,20 +130,20 @@ def read_recording(path: str, how: Reading) -> Recording:
         track, conditions = track_of(path, how)
         return recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())
     if path not in datasets.names():
-        raise InputError(Defect("does not exist, and no shipped record has this name", path))
+        raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
     r = datasets.resource(path)
     if r.table != "trajectory":
-        raise InputError(Defect(f"is a {r.table} table; a trajectory of time and gap is needed", path))
+        raise InputError(Defect(f"is a {r.table} table; a trajectory of time and gap is needed", file=path))
     track, error = datasets.load_track(path), r.digitisation_error
-    found = recording(
+    record = recording(
         path, track, how.conditions or r.conditions, r.hash.removeprefix("sha256:"), r.quoted.get("release_gap_m"),
         error.offset_sigma.get("gap_m"),
     )  # fmt: skip
-    clock = found.clock
-    if found.clock_of == "release":
+    clock = record.clock
+    if record.clock_of == "release":
         clock = Normal(0.0, error.offset_sigma.get("time_s", clock.sigma))
     return replace(
-        found,
+        record,
         clock=clock,
         clock_rate=error.scale_sigma.get("time_s", 0.0),
         scale=error.scale_sigma.get("gap_m", SCALE),
@@ -147,7 +157,7 @@ def _check_header(path: str, how: Reading) -> None:
         own = how.columns.get(name, name)
         if own not in header:
             rule = f"is missing: a trajectory has time and gap; the header names {', '.join(header)}"
-            raise InputError(Defect(rule, path, 1, own))
+            raise InputError(Defect(rule, file=path, row=1, field=own))
 
 
 def recording(
@@ -156,10 +166,10 @@ def recording(
 ) -> Recording:  # fmt: skip
     """A record from its track; ``release_gap`` (m) is that of a release from rest, ``level_sigma`` its error."""
     d = conditions.sphere.diameter
-    found = contacts(track)
-    check(name, track, found, conditions)
-    level = found.level or 0.0
-    rest = found.contacts[-1].approach.stop if found.level is not None else len(track.time_s)
+    touches = contacts(track)
+    check(name, track, touches, conditions)
+    level = touches.level or 0.0
+    rest = touches.contacts[-1].approach.stop if touches.level is not None else len(track.time_s)
     time, gap = track.time_s[:rest], track.value[:rest] - level
     rising = begins_rising(track)
     notes = []
@@ -167,7 +177,7 @@ def recording(
         n = len(track.time_s) - rest
         notes.append(f"{name}: the {n} frames at rest tell the level of the wall ({level:.2g} m) and nothing else")
     zero = LEVEL_D * d if level_sigma is None else level_sigma
-    approach = np.arange(0) if rising else np.array(found.contacts[0].approach, int)
+    approach = np.arange(0) if rising else np.array(touches.contacts[0].approach, int)
     start = _start(name, time, gap, approach, conditions, release_gap, zero, notes)
     dt = float(np.median(np.diff(track.time_s)))
     if start.kind == "height" and release_gap is not None:
@@ -184,7 +194,7 @@ def recording(
     return Recording(
         name, conditions, track, time, gap, track.sigma, len(track.time_s) - rest,
         float(np.mean(track.value[rest:]) - level) if rest < len(track.time_s) else 0.0,
-        start, clock, clock_of, 0.0, SCALE, zero, bounces(track, found)[0], digest, tuple(notes),
+        start, clock, clock_of, 0.0, SCALE, zero, bounces(track, touches)[0], digest, tuple(notes),
     )  # fmt: skip
 
 
@@ -211,8 +221,8 @@ def _start(
         impact = Normal(quoted.speed, max(quoted.speed_sigma, 1e-3 * quoted.speed))
     else:
         out = float(np.max(np.diff(gap[:4]) / np.diff(time[:4])))
-        impact = Normal(out / 0.75, UNSEEN * out / 0.75)
+        impact = Normal(out / FIRST_E, UNSEEN * out / FIRST_E)
         notes.append(f"{name}: begins on a rebound whose impact was not filmed; its speed is open within 30 %")
     about = np.array([-0.04, 0.0, 0.04]) if conditions.impact is not None else np.array([-0.3, 0.0, 0.3])
-    reach = [release_reaching(float(impact.mean * (1 + x)), conditions, gap=_RUN_UP * d).speed for x in about]
-    return Start("impact", impact, _RUN_UP * d, tuple(map(float, np.polyfit(about, reach, 2))))
+    reach = [release_reaching(float(impact.mean * (1 + x)), conditions, gap=_RUN_UP_D * d).speed for x in about]
+    return Start("impact", impact, _RUN_UP_D * d, tuple(map(float, np.polyfit(about, reach, 2))))

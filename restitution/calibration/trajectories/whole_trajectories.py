@@ -37,7 +37,11 @@ from restitution.stokes import H_FILM, Speed, convention
 TOLERANCE = 1e-5
 """Relative error of an integration step; the trajectory is then within 1e-4 d of the converged one."""
 _ROUNDS = 10
-_E_STEP, _START_STEP = 0.02, 0.02
+"""Maps about better and better centres before the estimate is given up."""
+_E_STEP = 0.02
+"""Steps of the first map in each restitution."""
+_START_STEP = 0.02
+"""Greatest step of it in what is open at the start, relative."""
 
 
 @dataclass(frozen=True)
@@ -111,10 +115,10 @@ class WholeTrajectory:
             "stokes_convention": stokes, "e_dry": r.conditions.sphere.e_dry,
             "note": "from the whole trajectory" + (", wake of the approach" if self.wake else ""),
         }  # fmt: skip
-        found = []
+        rebounds = []
         for n in np.flatnonzero(outside):
             v_sigma, e_sigma = np.sqrt(C[n, n]), np.sqrt(C[n + self.bounces, n + self.bounces])
-            found.append(
+            rebounds.append(
                 about | {
                     "impact": int(n) + 1, "time_s": self.contact_times()[n],
                     "impact_speed_m_s": v[n], "impact_speed_sigma_m_s": v_sigma,
@@ -124,8 +128,8 @@ class WholeTrajectory:
                 }
             )  # fmt: skip
         slopes = find_impacts(r.track, r.conditions, Speed.FAR, stokes, r.name).rows
-        last = max((row["impact"] for row in found), default=0)
-        return found + [row for row in slopes if row["outcome"] == "not_resolved" and row["impact"] > last]
+        last = max((row["impact"] for row in rebounds), default=0)
+        return rebounds + [row for row in slopes if row["outcome"] == "not_resolved" and row["impact"] > last]
 
     def outside(self) -> NDArray:
         """Of each bounce, whether the flights before and after it leave the film."""
@@ -157,45 +161,46 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
         flights = expand_about(lambda x: integrate(r, x, wake), centre, steps, len(centre), before)
         if flights.flights < len(centre):  # a last bounce so low that the model has none, or not in all of the map
             if flights.flights < 2:
-                raise InputError(Defect("the model does not bounce where the record does", r.name))
+                raise InputError(Defect("the model does not bounce where the record does", file=r.name))
             centre, steps, eta = centre[: flights.flights], steps[: flights.flights], None
             continue
-        found = RecordLikelihood(r, flights, noise, np.zeros(0))
-        mean, sigma = found.prior
+        likelihood = RecordLikelihood(r, flights, noise, np.zeros(0))
+        mean, sigma = likelihood.prior
         if eta is None:
             values = mean.copy()
-            found.named(values).flight[:] = centre
+            likelihood.named(values).flight[:] = centre
             eta = (values - mean) / sigma
-        found = RecordLikelihood(r, flights, noise, eta).settled()
-        noise, eta = found.noise, found.eta
-        m = found.marginal()
-        new = found.named(found.values(m.moments()[0])).flight
+        likelihood = RecordLikelihood(r, flights, noise, eta).settled()
+        noise, eta = likelihood.noise, likelihood.eta
+        m = likelihood.marginal()
+        new = likelihood.named(likelihood.values(m.moments()[0])).flight
         moved = np.max(np.abs(new - centre) / steps)
         centre = new
         if narrow and moved < 1.5:
             break
         if moved < 1.5:
-            own = found.prior[1] * np.sqrt(np.diag(m.moments()[1]))
-            steps, narrow = np.clip(found.named(own).flight, 0.02 * steps, steps), True
+            own = likelihood.prior[1] * np.sqrt(np.diag(m.moments()[1]))
+            steps, narrow = np.clip(likelihood.named(own).flight, 0.02 * steps, steps), True
     else:
-        raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", r.name))
-    return _summary(r, wake, found, m)
+        raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", file=r.name))
+    return _summary(r, wake, likelihood, m)
 
 
-def _summary(r: Recording, wake: bool, found: RecordLikelihood, m: Marginal) -> WholeTrajectory:
+def _summary(r: Recording, wake: bool, likelihood: RecordLikelihood, m: Marginal) -> WholeTrajectory:
     """The numbers, and a direct integration at the estimate."""
     eta, C = m.moments()
-    values, sigma = found.values(eta), found.prior[1]
-    path = integrate(r, found.named(values).flight, wake)
-    flights = found.model(values)
-    time = found.own_time(values, flights)
+    values, sigma = likelihood.values(eta), likelihood.prior[1]
+    path = integrate(r, likelihood.named(values).flight, wake)
+    flights = likelihood.model(values)
+    time = likelihood.own_time(values, flights)
     inside = (time > 0) & (time < flights.contacts[-1])
     away = np.abs(path.gap(time) - flights(time)[0])[inside]
-    residual = r.gap_m - found.predict(values)
+    residual = r.gap_m - likelihood.predict(values)
     after = time >= flights.contacts[1]
     return WholeTrajectory(
-        r, wake, found, found.names, values, C * np.outer(sigma, sigma),
-        _log_moments(found.noise.sigma_u, m.weights), _log_moments(found.noise.tau, m.weights), m.log, path,
+        r, wake, likelihood, likelihood.names, values, C * np.outer(sigma, sigma),
+        _log_moments(likelihood.noise.sigma_u, m.weights), _log_moments(likelihood.noise.tau, m.weights),
+        m.log, path,
         float(np.max(away, initial=0.0) / r.sigma),
         float(np.sqrt(np.mean(residual[after] ** 2)) / r.conditions.sphere.diameter),
     )  # fmt: skip
@@ -220,9 +225,9 @@ def _fly(r: Recording, start: float, closures: Closures) -> Trajectory:
     try:
         path = bounce(r.conditions, release, closures, float(end), TOLERANCE)
     except IntegrationError as error:
-        raise InputError(Defect(str(error), r.name)) from None
+        raise InputError(Defect(str(error), file=r.name)) from None
     if not path.impacts:
-        raise InputError(Defect("the model does not reach the wall within the record", r.name))
+        raise InputError(Defect("the model does not reach the wall within the record", file=r.name))
     return path
 
 
@@ -251,25 +256,27 @@ def _first_guess(r: Recording, wake: bool) -> NDArray:
             after = path.gap(path.impacts[len(known)].time_s + time)
             return float(np.sum((after - gap) ** 2) / d**2)
 
-        found = minimize_scalar(misfit, bounds=(0.05, 0.98), method="bounded", options={"xatol": 5e-3})
-        known.append(float(found.x))
+        nearest = minimize_scalar(misfit, bounds=(0.05, 0.98), method="bounded", options={"xatol": 5e-3})
+        known.append(float(nearest.x))
     return np.array([begin, *known])
 
 
-def distance_d(found: WholeTrajectory, closures: Closures) -> tuple[Trajectory, float, float]:
+def distance_d(trajectory: WholeTrajectory, closures: Closures) -> tuple[Trajectory, float, float]:
     """The model with other closures, released as estimated: its trajectory, rms distance in d, first apex in m.
 
     The clocks are brought together on the approach alone (:func:`restitution.bounce.agreement.agreement`).
     """
-    r = found.recording
-    path = _fly(r, float(found.likelihood.named(found.mean).start), closures)
+    r = trajectory.recording
+    path = _fly(r, float(trajectory.likelihood.named(trajectory.mean).start), closures)
     apexes = path.apexes()
     return path, agreement(path, r.track).rms_d, float(apexes[0]) if len(apexes) else 0.0
 
 
-def band(found: WholeTrajectory, time: NDArray, draws: int = 200, seed: int = 0) -> NDArray:
+def band(trajectory: WholeTrajectory, time: NDArray, draws: int = 200, seed: int = 0) -> NDArray:
     """Gap in m of the model at recorded ``time`` for draws from what is known of the unknowns, (draws, times)."""
     rng = np.random.default_rng(seed)
-    root = np.linalg.cholesky(found.covariance + 1e-18 * np.diag(np.maximum(np.diag(found.covariance), 1e-30)))
-    values = found.mean + rng.standard_normal((draws, len(found.mean))) @ root.T
-    return np.array([found.likelihood.predict(v, time) for v in values])
+    root = np.linalg.cholesky(
+        trajectory.covariance + 1e-18 * np.diag(np.maximum(np.diag(trajectory.covariance), 1e-30))
+    )
+    values = trajectory.mean + rng.standard_normal((draws, len(trajectory.mean))) @ root.T
+    return np.array([trajectory.likelihood.predict(v, time) for v in values])

@@ -93,9 +93,9 @@ def _everything() -> tuple:
         rows: list[dict] = []
         notes[str(definition)] = []
         for r in resources:
-            found = find_impacts(datasets.load_track(r.name), r.conditions, definition, "st", r.name, r.kind)
-            rows += [row | _provenance(r) for row in found.rows]
-            notes[str(definition)] += [f"{r.name}: {note}" for note in found.notes]
+            impacts = find_impacts(datasets.load_track(r.name), r.conditions, definition, "st", r.name, r.kind)
+            rows += [row | _provenance(r) for row in impacts.rows]
+            notes[str(definition)] += [f"{r.name}: {note}" for note in impacts.notes]
         columns = [*datasets.schema("impact").columns, *_provenance(resources[0])]
         tables.append(pd.DataFrame(rows, columns=columns))
         measured = tables[-1][tables[-1].kind == "measured"]
@@ -111,7 +111,7 @@ def predicted(folder: Path) -> dict[str, KeptRun]:
     from restitution import cases
     from restitution.runs.kept import read_run
 
-    found = {}
+    runs = {}
     for name in cases.names():
         case = cases.read_case(name)
         varied = name.endswith("_calibrated") or (name.startswith("gondret_st152") and name != "gondret_st152_10")
@@ -119,8 +119,8 @@ def predicted(folder: Path) -> dict[str, KeptRun]:
         if same_grid and case.contact is not None and case.contact.mode == "dry" and not varied:
             run = read_run(case, folder)
             if run is not None and len(run.impacts):
-                found[name] = run
-    return found
+                runs[name] = run
+    return runs
 
 
 def _provenance(r: Resource) -> dict[str, object]:

@@ -111,9 +111,9 @@ def _impacts(fig1: content.Fig1, speed: str) -> list[dict]:
     """Cells of the table of impacts: speed and St by the figure's definition, else by the first that has them."""
     rows = []
     for (record, impact), group in fig1.every.groupby(["record", "impact"], sort=False):
-        found = {row.speed_definition: row for row in group.itertuples()}
-        shown = speed if speed in found else next(d for d in DEFINITIONS if d in found)
-        row = found[shown]
+        by_definition = {row.speed_definition: row for row in group.itertuples()}
+        shown = speed if speed in by_definition else next(d for d in DEFINITIONS if d in by_definition)
+        row = by_definition[shown]
         mark = "" if shown == speed else f" ({shown})"
         rows.append(
             {
@@ -122,7 +122,7 @@ def _impacts(fig1: content.Fig1, speed: str) -> list[dict]:
                 "impact": impact,
                 "v": f"{row.impact_speed_m_s:.3f} ± {row.impact_speed_sigma_m_s:.3f}{mark}",
                 "St": f"{row.stokes:.1f} ± {row.stokes_sigma:.1f}",
-                "e": {d: _e(found.get(d)) for d in DEFINITIONS},
+                "e": {d: _e(by_definition.get(d)) for d in DEFINITIONS},
                 "note": row.note,
             }
         )
@@ -153,6 +153,6 @@ def _films() -> dict[float, list[str]]:
     """E_eff of the first three bounces of the 3 mm sphere, far from films of half, one and two times the usual."""
     name, table = content.SIMULATED_BY_ABSTRACT, {}
     for h in (H_FILM / 2, H_FILM, 2 * H_FILM):
-        found = find_impacts(datasets.load_track(name), datasets.resource(name).conditions, Speed.FAR, h_film=h)
-        table[h] = [f"{r['e_eff']:.2f} ± {r['e_eff_sigma']:.2f}" for r in found.rows[:3] if "e_eff" in r]
+        impacts = find_impacts(datasets.load_track(name), datasets.resource(name).conditions, Speed.FAR, h_film=h)
+        table[h] = [f"{r['e_eff']:.2f} ± {r['e_eff_sigma']:.2f}" for r in impacts.rows[:3] if "e_eff" in r]
     return table

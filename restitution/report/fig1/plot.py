@@ -94,8 +94,8 @@ def _band(ax: Axes, fig1: Fig1, speed: Speed) -> None:
     """The best supported form of Eq. (4) with K fitted: where the curve lies with 95 %."""
     best = fig1.judgement(speed).fitted.scores[0]
     St = np.geomspace(St_MIN, St_MAX, 600)
-    found = predict(result_of(best.fit), St, E_DRY, _drawn_for(fig1))
-    low, high = np.clip(found.law["95%"] / E_DRY, 0, None).T
+    band = predict(result_of(best.fit), St, E_DRY, _drawn_for(fig1))
+    low, high = np.clip(band.law["95%"] / E_DRY, 0, None).T
     K = best.fit.maximum.values[0]
     label = f"95 % of {_FORMS[best.label]}, K fitted: {K:.1f}"
     ax.fill_between(St, low, high, color="#9a9a9a", alpha=0.6, lw=0, zorder=1, label=label)

@@ -51,16 +51,16 @@ class Trajectories:
 
     def band(self, St: NDArray, e_dry: float, conditions: Conditions) -> tuple[float, NDArray]:
         """K of the best form, and where its curve lies with 95 %, shape (n, 2)."""
-        found = predict(result_of(self.best.fit), St, e_dry, conditions)
+        prediction = predict(result_of(self.best.fit), St, e_dry, conditions)
         # Four digits: what a search for a maximum gives on any machine.
-        return float(self.best.fit.maximum.values[0]), np.round(found.law["95%"], 4)
+        return float(self.best.fit.maximum.values[0]), np.round(prediction.law["95%"], 4)
 
     @cached_property
     def distances(self) -> dict[str, tuple[float, float]]:
         """By record, rms distance in d and first apex in m of the model with the best form and its one K."""
-        found = self.measured.found[self.measured.preferred]
+        trajectories = self.measured.trajectories[self.measured.preferred]
         closures = closures_of(self.best.fit, self.measured.preferred)
-        return {t.recording.name: distance_d(t, closures)[1:] for t in found}
+        return {t.recording.name: distance_d(t, closures)[1:] for t in trajectories}
 
     def frames(self) -> int:
         """How many positions take part."""
@@ -72,7 +72,9 @@ def gather(names: Sequence[str]) -> Trajectories:
     how = Reading()
     measured = Measured.of(read_recordings(names, how))
     plans = [(name, Plan(model_of(name))) for name in FORMS]
-    rankings = {wake: rank(plans, observations(measured.found[wake], how)) for wake in measured.found}
+    rankings = {
+        wake: rank(plans, observations(measured.trajectories[wake], how)) for wake in measured.trajectories
+    }
     return Trajectories(measured, rankings)
 
 
@@ -125,7 +127,7 @@ def _named(records: list[str]) -> str:
 
 
 def _gains(t: Trajectories) -> dict[str, float]:
-    pairs = zip(t.measured.found[True], t.measured.found[False], strict=True)
+    pairs = zip(t.measured.trajectories[True], t.measured.trajectories[False], strict=True)
     return {a.recording.name: a.log_evidence - b.log_evidence for a, b in pairs}
 
 
@@ -152,24 +154,24 @@ def records(t: Trajectories) -> list[dict]:
     """Rows of the records for the page and the CSV file: each under both models."""
     rows = []
     for wake in (True, False):
-        for found in t.measured.found[wake]:
-            rows.append(_record(found, wake, t))
+        for trajectory in t.measured.trajectories[wake]:
+            rows.append(_record(trajectory, wake, t))
     return rows
 
 
-def _record(found: WholeTrajectory, wake: bool, t: Trajectories) -> dict:
-    d = found.recording.conditions.sphere.diameter
-    scale, scale_sigma = found.unknowns["scale"]
+def _record(trajectory: WholeTrajectory, wake: bool, t: Trajectories) -> dict:
+    d = trajectory.recording.conditions.sphere.diameter
+    scale, scale_sigma = trajectory.unknowns["scale"]
     shown = wake == t.measured.preferred
-    rms, apex = t.distances[found.recording.name] if shown else (np.nan, np.nan)
+    rms, apex = t.distances[trajectory.recording.name] if shown else (np.nan, np.nan)
     row = {
-        "record": found.recording.name, "model": MODELS[wake], "frames": len(found.recording.time_s),
-        "frames_at_rest": found.recording.rest_frames, "ln_evidence": found.log_evidence,
-        "correlated_noise_d": found.sigma_u[0] / d, "correlation_time_s": found.tau[0],
-        "scale": scale, "scale_sigma": scale_sigma, "rms_d": found.rms_d, "rms_law_d": rms,
+        "record": trajectory.recording.name, "model": MODELS[wake], "frames": len(trajectory.recording.time_s),
+        "frames_at_rest": trajectory.recording.rest_frames, "ln_evidence": trajectory.log_evidence,
+        "correlated_noise_d": trajectory.sigma_u[0] / d, "correlation_time_s": trajectory.tau[0],
+        "scale": scale, "scale_sigma": scale_sigma, "rms_d": trajectory.rms_d, "rms_law_d": rms,
         "first_apex_law_m": apex,
     }  # fmt: skip
-    e = found.restitutions + [(np.nan, np.nan)] * BOUNCES
+    e = trajectory.restitutions + [(np.nan, np.nan)] * BOUNCES
     for n in range(BOUNCES):
         row[f"e_{n + 1}"], row[f"e_{n + 1}_sigma"] = e[n]
     return row

@@ -54,12 +54,12 @@ def observations(every: pd.DataFrame, definition: str, conditions: dict[str, Con
 
 def judge(every: pd.DataFrame, conditions: dict[str, Conditions], names: tuple[str, ...]) -> list[Judgement]:
     """Judgements under every definition of speed in the table; ``names`` are the laws to judge as they stand."""
-    found = []
+    judgements = []
     for definition in dict.fromkeys(every.speed_definition):
         o = observations(every, definition, conditions)
         held = [(name, _plan(name, True)) for name in names]
-        found.append(Judgement(definition, rank(held, o), rank([(n, _plan(n, False)) for n in FORMS], o)))
-    return found
+        judgements.append(Judgement(definition, rank(held, o), rank([(n, _plan(n, False)) for n in FORMS], o)))
+    return judgements
 
 
 def _plan(name: str, held: bool) -> Plan:

@@ -14,7 +14,7 @@ class Check(BaseModel):
     """One figure beside its reference.
 
     ``error`` is relative, or absolute where the reference is 0; ``target`` is the magnitude that was aimed at;
-    ``physics`` is the version of the program that gave it (:mod:`restitution.runs.validity`), None where not known.
+    ``physics`` is the version of the program that gave it (:mod:`restitution.runs.validity`), None if not known.
     """
 
     group: str = ""
@@ -38,9 +38,9 @@ def read_checks(path: str | Path) -> list[Check]:
     try:
         return TypeAdapter(list[Check]).validate_python(json.loads(Path(path).read_bytes()))
     except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", str(path))) from None
+        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
     except (ValidationError, ValueError) as error:
-        raise InputError(Defect(f"is no list of checks: {error}".splitlines()[0], str(path))) from None
+        raise InputError(Defect(f"is no list of checks: {error}".splitlines()[0], file=str(path))) from None
 
 
 def text_of(checks: list[Check]) -> str:

@@ -113,7 +113,7 @@ def _checks(given: str | Path | None) -> list[Check]:
         return []
     path = Path(given)
     if not path.is_file():
-        raise InputError(Defect("is no file", str(path)))
+        raise InputError(Defect("is no file", file=str(path)))
     return read_checks(path)
 
 

@@ -130,7 +130,7 @@ def fitted_K() -> tuple[float, float, float]:
     names = [r.name for r in bouncing if r.kind == "measured" and r.conditions.sphere.e_dry is not None]
     how = Reading()
     measured = Measured.of(read_recordings(names, how), (True,))
-    found = law_fit(Plan(model_of(FITTED_LAW)), observations(measured.found[True], how)).maximum
+    found = law_fit(Plan(model_of(FITTED_LAW)), observations(measured.trajectories[True], how)).maximum
     K, low, high = (float(f"{x:.3g}") for x in (found.values[0], *found.intervals[0.95][0]))
     return K, low, high
 

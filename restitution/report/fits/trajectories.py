@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from restitution.calibration.trajectories.fit import TrajectoryFit
     from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory
 
-_COLUMNS, _POINTS = 2, 1200
+_COLUMNS = 2
+"""Records side by side."""
+_POINTS = 1200
+"""Of a line over a record."""
 
 
 def write(folder: str | Path, fit: TrajectoryFit, result: FitResult) -> list[str]:
@@ -40,12 +43,12 @@ def draw(fit: TrajectoryFit) -> Drawing:
     """For each record its frames with the model, and below the residuals."""
     from matplotlib.figure import Figure
 
-    found = fit.found
-    columns = min(_COLUMNS, len(found))
-    rows = -(-len(found) // columns)
+    trajectories = fit.trajectories
+    columns = min(_COLUMNS, len(trajectories))
+    rows = -(-len(trajectories) // columns)
     with style():
         figure = Figure(figsize=(5.5 * columns if columns > 1 else 9.0, 4.2 * rows), layout="constrained")
-        for panel, t in zip(np.ravel(figure.subfigures(rows, columns, squeeze=False)), found, strict=False):
+        for panel, t in zip(np.ravel(figure.subfigures(rows, columns, squeeze=False)), trajectories, strict=False):
             upper, lower = panel.subplots(2, 1, sharex=True, height_ratios=(3, 1))
             _record(upper, lower, fit, t)
         return save(figure)
