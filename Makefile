@@ -1,5 +1,5 @@
 # Both commands do all set-up themselves, on a machine that has Python (>= 3.11) and make.
-#   make test     lint and the test suite
+#   make test     lint, imports, names and calls, the test suite
 #   make report   regenerate the comparison reports in reports/; makes the runs of Fig. 2 first if they are stale
 #   make report-full   the same with all shipped cases run (hours); unchanged ones are not repeated
 
@@ -12,6 +12,8 @@ INSTALLED := .venv/.installed
 test: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
+	$(BIN)/mypy
 	$(BIN)/python -m pytest
 
 report: $(INSTALLED)

@@ -1,16 +1,23 @@
-"""Which module knows which: the solver nothing of the toolkit, the toolkit the solver in one module."""
+"""The house: rooms that can be drawn from memory. Which room knows which is a contract in pyproject.toml."""
 
 import ast
-import graphlib
-import importlib.util
 from pathlib import Path
 
 import pytest
 
-import lbm
-import restitution
+ROOT = Path(__file__).parent.parent
+PACKAGES = ("lbm", "restitution")
+LIKE_THINGS = {"restitution/laws", "restitution/commands"}
+"""Folders of things of one kind, which may be wide."""
+WIDEST, LONGEST = 15, 320
 
-NOT_YET = ("lbm.", "restitution.report.fig2.content")
+
+def modules(*places):
+    return [path for place in places for path in sorted((ROOT / place).rglob("*.py"))]
+
+
+def name(path):
+    return path.relative_to(ROOT).as_posix()
 
 
 def imported(path):
@@ -19,75 +26,43 @@ def imported(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0:
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            yield node.module
 
 
-def importers(package, name):
-    """Modules of ``package`` that import ``name``."""
-    root = Path(package.__file__).parent
-    return {
-        path.relative_to(root).as_posix()
-        for path in root.rglob("*.py")
-        if any(n.split(".")[0] == name for n in imported(path))
-    }
+def importers(package, *places):
+    return {name(path) for path in modules(*places) if any(n.split(".")[0] == package for n in imported(path))}
 
 
-@pytest.mark.parametrize(
-    ("package", "name", "allowed"),
-    [(lbm, "restitution", set()), (restitution, "lbm", {"runs/resolved.py", "runs/setup.py"})],
-)
-def test_the_packages_meet_in_one_module(package, name, allowed):
-    assert importers(package, name) == allowed
-
-
-def own_names():
-    """(importer, module, name) of everything that a module takes from another of the house, lazy or for types."""
-    for package in (lbm, restitution):
-        root = Path(package.__file__).parent
-        for path in root.rglob("*.py"):
-            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-                if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in (
-                    "lbm",
-                    "restitution",
-                ):
-                    for alias in node.names:
-                        yield path.relative_to(root.parent).as_posix(), node.module, alias.name
-
-
-def is_there(module, name):
-    there = importlib.import_module(module)
-    if hasattr(there, name):
-        return True
-    return hasattr(there, "__path__") and importlib.util.find_spec(f"{module}.{name}") is not None
-
-
-def test_every_name_that_is_imported_is_there():
-    assert [entry for entry in own_names() if not is_there(*entry[1:])] == []
+def test_the_solver_knows_nothing_of_the_toolkit_nor_do_its_tests():
+    assert importers("restitution", "lbm", "tests/lbm") == set()
 
 
 def test_benchmarks_are_imported_by_nobody():
-    root = Path(__file__).parent.parent
-    files = [path for place in ("tests", "lbm", "restitution") for path in (root / place).rglob("*.py")]
-    names = {name for path in files for name in imported(path) if name.split(".")[0] == "benchmarks"}
-    assert names <= {"lbm.problems.spheres"}  # becomes lbm.problems.flows.spheres
+    assert importers("benchmarks", "lbm", "restitution", "tests", "examples") == set()
 
 
-def test_the_solver_is_tested_without_the_toolkit():
-    files = (Path(__file__).parent / "lbm").rglob("*.py")
-    assert [path.name for path in files if any(n.split(".")[0] == "restitution" for n in imported(path))] == []
+def test_no_module_is_too_long():
+    assert [name(path) for path in modules(*PACKAGES) if len(path.read_text("utf-8").splitlines()) > LONGEST] == []
 
 
-def test_no_module_needs_one_that_needs_it():
-    """Imports within functions and those for types count: what a content is made into it does not know."""
-    modules = {}
-    for package in (lbm, restitution):
-        root = Path(package.__file__).parent
-        for path in root.rglob("*.py"):
-            name = ".".join(path.relative_to(root.parent).with_suffix("").parts)
-            modules[name.removesuffix(".__init__")] = path
-    needs = {
-        name: {n if n in modules else n.rpartition(".")[0] for n in imported(path)} & modules.keys() - {name}
-        for name, path in modules.items()
-        if not name.startswith(NOT_YET)
+def folders():
+    return sorted({path.parent for path in modules(*PACKAGES)})
+
+
+@pytest.mark.parametrize("folder", folders(), ids=name)
+def test_a_folder_of_unlike_things_is_not_too_wide(folder):
+    assert name(folder) in LIKE_THINGS or len(list(folder.glob("*.py"))) <= WIDEST
+
+
+@pytest.mark.parametrize("folder", [f for f in folders() if name(f) not in (*PACKAGES, *LIKE_THINGS)], ids=name)
+def test_a_face_names_its_rooms(folder):
+    face = (folder / "__init__.py").read_text("utf-8")
+    rooms = {path.stem for path in folder.glob("*.py")} | {
+        path.parent.name for path in folder.glob("*/__init__.py")
     }
-    graphlib.TopologicalSorter(needs).prepare()  # raises, naming the circle
+    assert [room for room in sorted(rooms - {"__init__"}) if room not in face] == []
+
+
+def test_tests_mirror_the_tree():
+    tests = {path.parent for path in modules(*(f"tests/{package}" for package in PACKAGES))}
+    assert [name(t) for t in sorted(tests) if not (ROOT / t.relative_to(ROOT / "tests")).is_dir()] == []

@@ -1,7 +1,8 @@
 """Flows whose answer is known.
 
 :mod:`~lbm.problems.flows` has the exact solutions without a sphere, handed on here; :mod:`~lbm.problems.spheres`
-sets up flows around spheres and measures what references are given for.
+sets up flows around spheres and measures what references are given for, :mod:`~lbm.problems.impulsive_start` a
+sphere set moving at once.
 """
 
 from lbm.problems.flows import PROBLEMS, Case, Preset, Problem

@@ -122,7 +122,8 @@ def rebound(St: float, n: int = 200, D_end: float = 1.0, softness: float = 1.0, 
     def arrived(_t: float, y: np.ndarray) -> float:
         return y[-2] - D_end
 
-    arrived.terminal, arrived.direction = True, 1 if D_end >= 1 else -1
+    arrived.terminal = True  # type: ignore[attr-defined]  # scipy reads these of a function
+    arrived.direction = 1 if D_end >= 1 else -1  # type: ignore[attr-defined]
     start = np.concatenate((softness * A @ (1 / (4 * St * (1 + r**2 / 2) ** 2)), [1.0, -1.0]))
     flight = solve_ivp(rate, (0.0, 100.0), start, "BDF", events=arrived, jac=jacobian, rtol=rtol, atol=rtol / 100)
     if flight.status != 1:

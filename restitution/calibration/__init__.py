@@ -13,7 +13,7 @@ Tracks may also become impacts by all their positions: :mod:`~.trajectories.reco
 :mod:`~.trajectories.flight_map` and under the noise of :mod:`~.trajectories.correlated_noise`;
 :mod:`~.trajectories.whole_trajectories` gives the impacts, :mod:`~.trajectories.fit` the law.
 
-A fit in Python::
+:mod:`~.showing` is how results show themselves. A fit in Python::
 
     observations = read("impacts.csv", stokes="st", speed="far")
     result = result_of(estimate(Plan(model_of("eq4_exponential")), observations))

@@ -12,7 +12,7 @@ import pkgutil
 
 from restitution.laws.base import REGISTRY, CheckValue, Law, Status, parameter
 from restitution.laws.rebound import ReboundLaw
-from restitution.laws.registry import get, names
+from restitution.laws.registry import get, get_rebound, names
 from restitution.laws.resistance import ResistanceLaw
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "ResistanceLaw",
     "Status",
     "get",
+    "get_rebound",
     "names",
     "parameter",
 ]

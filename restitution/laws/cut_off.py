@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -53,6 +53,9 @@ class CutOffLaw(ResistanceLaw):
     full: ClassVar[type[ResistanceLaw]]
     subtracted: ClassVar[bool] = True
     """Whether the value at eps_c is taken off, so that the correction sets in at zero."""
+    if TYPE_CHECKING:  # parameters of each law of this kind, with a default of its own
+        eps_c: float
+        eps_min: float
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         cls.variables = cls.full.variables

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from restitution.laws.base import CheckValue, Law, Status, parameter
 
@@ -51,6 +51,10 @@ class FiniteReynolds(HistoryLaw):
         "small fluctuations about a steady motion, Re up to about 100; a rebound is neither"
     )
     status: ClassVar = Status.IN_CODE
+    if TYPE_CHECKING:  # parameters of each law of this kind, with a default of its own
+        f_0: float
+        f_1: float
+        c_1: float
 
     def crossover(self, Re: Any) -> Any:
         """tau_c, the lag nu (t - s)/r^2 from which on the kernel leaves Basset's."""

@@ -6,6 +6,7 @@ import difflib
 
 from restitution.errors import InputError
 from restitution.laws.base import REGISTRY, Law
+from restitution.laws.rebound import ReboundLaw
 
 
 def get(name: str, **parameters: float) -> Law:
@@ -17,6 +18,14 @@ def get(name: str, **parameters: float) -> Law:
         hint = f"; did you mean {', '.join(near)}?" if near else "; see 'restitution laws list'"
         raise InputError(f"unknown law {name!r}{hint}") from None
     return law().replace(**parameters)
+
+
+def get_rebound(name: str, **parameters: float) -> ReboundLaw:
+    """:func:`get` where only a rebound law will do; raises :class:`InputError` for a law of another family."""
+    law = get(name, **parameters)
+    if not isinstance(law, ReboundLaw):
+        raise InputError(f"{name} is a {law.family} law; known: {', '.join(names('rebound'))}")
+    return law
 
 
 def names(family: str | None = None) -> list[str]:

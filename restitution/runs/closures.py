@@ -104,7 +104,7 @@ def rebound(case: Case, unit: float) -> Callable[[float, int], float]:
     if c.law is None:
         measured = measured_restitution(case.record) if c.measured == "record" else c.measured
         return lambda v, count: v * (measured[count] if count < len(measured) else 0.0)
-    law = laws.get(c.law, **c.parameters)
+    law = laws.get_rebound(c.law, **c.parameters)
 
     def by_law(v: float, count: int) -> float:
         if v <= 0:

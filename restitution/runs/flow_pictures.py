@@ -82,5 +82,5 @@ class FlowFrames:
             for moment in MOMENTS:
                 if f"{moment}_vorticity" in kept:
                     gap, time = kept[f"{moment}_scalars"]
-                    fields = (kept[f"{moment}_{name}"] for name in ("vorticity", "x_d", "z_d"))
-                    self.frames[moment] = Frame(*fields, float(gap), float(time))
+                    vorticity, x_d, z_d = (kept[f"{moment}_{name}"] for name in ("vorticity", "x_d", "z_d"))
+                    self.frames[moment] = Frame(vorticity, x_d, z_d, float(gap), float(time))

@@ -213,7 +213,7 @@ def _column_type(f: Field, scale: float) -> TypeAdapter:
     """The type of the filled cells of a column, made from the field's type and constraints."""
     c = f.constraints
     if f.type == "string":
-        return TypeAdapter(list[Literal[c.enum] if c.enum else str])
+        return TypeAdapter(list[Literal[c.enum] if c.enum else str])  # type: ignore[misc]  # made at run time
 
     def number(cell: str) -> float | str:
         if not NUMBER.fullmatch(cell):

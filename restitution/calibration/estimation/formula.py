@@ -138,8 +138,8 @@ class _Reader:
                     raise self.refuse(
                         node, f"{name} takes {least}{f' to {most}' if most > least else ''} arguments"
                     )
-                inside = [self.node(argument, depth + 1) for argument in arguments]
-                return lambda known: function(*(part(known) for part in inside))
+                parts = [self.node(argument, depth + 1) for argument in arguments]
+                return lambda known: function(*(part(known) for part in parts))
         allowed = f"numbers, names, + - * / **, {', '.join(_FUNCTIONS)}"
         raise self.refuse(node, f"is not part of the grammar of a formula: {allowed}")
 

@@ -75,7 +75,8 @@ class Noise:
         """Where the search begins: a hundredth of a diameter, a quarter of sqrt(d/g)."""
         low, high = noise_prior(r).T
         at = np.clip(np.log([0.01 * r.conditions.sphere.diameter, 0.25 * r.fall_time]), low, high)
-        return cls(*np.exp(at)[:, None], np.zeros(1))
+        sigma, tau = np.exp(at)[:, None]
+        return cls(sigma, tau, np.zeros(1))
 
 
 def noise_prior(r: Recording) -> NDArray:

@@ -1,5 +1,5 @@
 """Fig. 1: e_eff against St, measured, simulated and by the laws.
 
 Read :mod:`.content` (what is shown), :mod:`.scores`, :mod:`.verdict` and :mod:`.trajectories` (what the data say
-of the laws), :mod:`.plot`, :mod:`.page`.
+of the laws), :mod:`.plot`, :mod:`.page`, and :mod:`.report`, which puts them together.
 """
