@@ -20,6 +20,7 @@ from restitution.impacts.bounces import Bounces, filmed
 from restitution.report.fig2.checks import Check, read_checks
 from restitution.report.fig2.point_lines import PointLine, lines, without_forces
 from restitution.report.fig2.scores import Score, scores
+from restitution.report.fig2.studies import Group, groups
 from restitution.runs.kept import KeptRun, ensure, own_runs, read_run
 
 if TYPE_CHECKING:
@@ -48,6 +49,8 @@ class Fig2:
     checks: list[Check]
     forces_off: pd.DataFrame
     """The point-particle model on the main record with each force off in turn."""
+    groups: list[Group] = field(default_factory=list)
+    """Cases of the main record that differ in one choice, kept or not."""
     failed: dict[str, str] = field(default_factory=dict)
     lines: list[PointLine] = field(default_factory=list)
     """The point-particle model on the main record."""
@@ -94,7 +97,8 @@ def gather(
     own = [name for name in found if name not in cases]
     off = without_forces(RECORD)
     missing = [name for name in cases if name not in found and name not in failed]
-    return Fig2(found, scores(found, records, points), records, checks, off, failed, points, own, missing)
+    studies = groups(cases | {name: found[name].case for name in own}, RECORD)
+    return Fig2(found, scores(found, records, points), records, checks, off, studies, failed, points, own, missing)
 
 
 def _kept(cases: dict[str, Case], folder: Path, skip: Collection[str] = ()) -> dict[str, KeptRun]:

@@ -13,10 +13,9 @@ from restitution.report.page import number, percent
 from restitution.stokes import Speed
 
 if TYPE_CHECKING:
+    from restitution.cases.case import Case
+    from restitution.report.fig2.studies import Group
     from restitution.runs.kept import KeptRun
-
-GRIDS = ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20")
-SMALL_GRIDS = tuple(f"{name}_small" for name in GRIDS)
 
 
 def in_words(fig2: Fig2) -> list[str]:
@@ -24,7 +23,7 @@ def in_words(fig2: Fig2) -> list[str]:
     if MAIN not in fig2.runs:
         return []
     words = [_main(fig2.scores[MAIN]), _restitution(fig2.runs[MAIN])]
-    words += [w for w in (_grids(fig2, GRIDS, ""), _grids(fig2, SMALL_GRIDS, " in the smaller box")) if w]
+    words += [w for group in fig2.groups if (w := _grids(fig2, group))]
     if SOFT in fig2.runs:
         change = _first_apex(fig2.scores[SOFT]) / _first_apex(fig2.scores[MAIN]) - 1
         words.append(
@@ -76,9 +75,12 @@ def _imposed(score: Score, run: KeptRun) -> str:
     )
 
 
-def _grids(fig2: Fig2, names: tuple[str, ...], where: str) -> str | None:
-    """How far the apexes of several grids and lattice speeds are apart, with the same closures."""
-    known = [n for n in names if n in fig2.runs and not math.isnan(_first_apex(fig2.scores[n]))]
+def _grids(fig2: Fig2, group: Group) -> str | None:
+    """How far the apexes of several grids and lattice speeds are apart, with the closures of the main run."""
+    main, first = fig2.runs[MAIN].case, group.against
+    if not group.of_grids or (first.contact, first.film) != (main.contact, main.film):
+        return None
+    known = [n for n in group.names if n in fig2.runs and not math.isnan(_first_apex(fig2.scores[n]))]
     if len(known) < 2:
         return None
     scores = [fig2.scores[name] for name in known]
@@ -90,8 +92,14 @@ def _grids(fig2: Fig2, names: tuple[str, ...], where: str) -> str | None:
         values = ", ".join(number(apex * 1e3, 2) for apex in apexes)
         shown.append(f"{which} apex {values} mm, {100 * (max(apexes) / min(apexes) - 1):.1f} % between them")
     stale = ", ".join(name for name in known if fig2.runs[name].stale)
+    where = "" if first.name == MAIN else " in the smaller box" if _smaller(first, main) else f" of {first.name}"
     return (
         f"With {cells} cells per diameter and lattice speeds of {speeds}{where}: {'; '.join(shown)}; "
         f"the last is {percent(scores[-1].bounces.apex_errors[0])} from the record's first apex."
         + (f" Made with another version of code or case: {stale}." if stale else "")
     )
+
+
+def _smaller(case: Case, main: Case) -> bool:
+    """Whether a case has a smaller box than the main one."""
+    return all(getattr(case.numerics, side) < getattr(main.numerics, side) for side in ("width_d", "height_d"))

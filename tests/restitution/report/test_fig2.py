@@ -12,23 +12,29 @@ from restitution import cases, datasets
 from restitution.cli import main
 from restitution.commands.simulate import show_result
 from restitution.report.fig1 import content as fig1
+from restitution.report.fig1 import plot as fig1_plot
 from restitution.report.fig2 import content as fig2
 from restitution.report.fig2 import point_lines
 from restitution.report.fig2 import report as fig2_report
+from restitution.report.fig2.findings import in_words
+from restitution.report.fig2.sensitivity import sensitivity
+from restitution.report.fig2.studies import groups
+from restitution.report.page import percent
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.flow_pictures import FlowFrames, Frame
 from restitution.runs.validity import physics
 from restitution.runs.validity.program import program_hash
-from restitution.runs.validity.told import told
+from restitution.runs.validity.told import departures, told
+from restitution.stokes import Speed
 from restitution.tables.writing import table_text
 
 FALL = 8.146
 """Free fall of the 3 mm sphere in oil, m/s2: 9.81 (7800 - 935)/(7800 + 935/2)."""
 
 
-def keep(folder, name, e, current=True):
+def keep(folder, name, e, current=True, case=None):
     """A ballistic trajectory in the place of a run: rebounds by ``e`` from 0.585 m/s, without drag."""
-    case = cases.read_case(name)
+    case = cases.read_case(name) if case is None else case
     speeds = [0.585 * e**k for k in range(1, 5)]
     starts = np.cumsum([0.0, *(2 * v / FALL for v in speeds)])
     time = np.arange(-0.02, starts[-1], 2e-4)
@@ -221,3 +227,34 @@ def test_a_run_of_ones_own_case_is_scored(runs, tmp_path):
     assert found.scores["mine"].bounces == found.scores["gondret_st152_10"].bounces
     fig2_report.write(tmp_path / "out", runs)
     assert "mine" in (tmp_path / "out" / "index.html").read_text()
+
+
+def test_a_case_of_ones_own_joins_what_its_study_names(runs, tmp_path):
+    """A group with its reference, a finer grid among the findings, and a series of Fig. 1: all from one file."""
+    (tmp_path / "mine.toml").write_text(
+        'base = "gondret_st152_10"\n[numerics]\ncells_per_diameter = 12\nwidth_d = 7\nheight_d = 19\n'
+        '[study]\nvaries = "cells, my box"\nagainst = "gondret_st152_10_small"\nseries = "my spheres"\n'
+    )
+    mine = cases.read_case(tmp_path / "mine.toml")
+    keep(runs, "mine", 0.74, case=mine)
+    keep(runs, "gondret_st152_10_small", 0.75)
+    found = fig2.gather(runs)
+    group = found.groups[-1]  # no order is stated
+    assert (group.varies, group.names) == ("cells, my box", ("gondret_st152_10_small", "mine"))
+    rows = {row["name"]: row for row in sensitivity(found) if row["what"] == "cells, my box"}
+    assert rows["mine"]["changes"][0] == percent((0.74 / 0.75) ** 2 - 1)
+    assert any("10, 12 cells per diameter" in words for words in in_words(found))
+    joined = fig1.gather(runs=runs)
+    assert joined.simulated["mine"].series == "my spheres"
+    assert "this package, simulation of my spheres" in [look[0] for look in fig1_plot.looks(joined).values()]
+    fig1_plot.draw(joined, Speed.CONTACT)
+
+
+def test_groups_of_shipped_cases_differ_in_what_reaches_the_solver():
+    """No case is in a group twice, and each is told something else than the one it stands against."""
+    shipped = {name: cases.read_case(name) for name in cases.names()}
+    found = groups(shipped, fig2.RECORD)
+    assert len(found) == len({group.varies for group in found})
+    for group in found:
+        for case in group.cases[1:]:
+            assert departures(told(group.against), told(case)), case.name
