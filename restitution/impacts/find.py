@@ -55,7 +55,8 @@ def find_impacts(
     """All impacts of a track: impact speed, St and e_eff with their errors, a row a contact.
 
     e_eff = rebound speed / impact speed, both under one definition of the speed
-    (:mod:`restitution.impacts.speed`); their errors come from the noise of the frames and from the choice of window, and carry their correlation.
+    (:mod:`restitution.impacts.speed`); their errors come from the noise of the frames and from the
+    choice of window, and carry their correlation.
 
     Parameters
     ----------
