@@ -119,7 +119,17 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 
 
 def read_conditions(path: str | Path) -> Conditions:
-    """Read a TOML file of conditions; raises :class:`InputError` naming every field that is wrong."""
+    """Fluid, sphere, wall and gravity of a TOML file, in SI.
+
+    Parameters
+    ----------
+    path : a file with tables ``[fluid]`` (density in kg/m3, viscosity in Pa s) and ``[sphere]`` (diameter in m,
+        density, ``e_dry``), and ``[wall]``, ``[partner]``, ``gravity`` where they matter.
+
+    Raises
+    ------
+    InputError : naming every field that is wrong, or why the file cannot be read.
+    """
     try:
         return Conditions.model_validate(read_toml(path))
     except ValidationError as error:

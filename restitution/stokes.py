@@ -151,7 +151,19 @@ class StokesNumber:
     def from_speed(
         cls, v: float | np.ndarray, conditions: Conditions, key: str = "st", speed: Speed = Speed.UNSTATED
     ) -> StokesNumber:
-        """St of impact speed ``v`` (m/s, positive towards the wall) under ``conditions``."""
+        """St of an impact speed.
+
+        Parameters
+        ----------
+        v : impact speed in m/s, positive towards the wall; a number or an array.
+        conditions : fluid and sphere (and wall or partner, for conventions that need it).
+        key : convention, "st" = rho_p v d/(9 mu) by default; all are in :data:`CONVENTIONS`.
+        speed : which impact speed ``v`` is.
+
+        Raises
+        ------
+        InputError : for an unknown convention, or one that the conditions do not suffice for.
+        """
         return cls(np.asarray(v, float)[()] * convention(key).per_speed(conditions), key, speed)
 
     def to(self, key: str, conditions: Conditions | None = None) -> StokesNumber:

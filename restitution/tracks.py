@@ -41,7 +41,18 @@ class Track:
 
     @classmethod
     def from_table(cls, table: pd.DataFrame, sigma: float | None = None, scale_sigma: float = 0.0) -> Track:
-        """A track from a table with ``time_s`` and ``gap_m`` or ``velocity_m_s``; noise estimated if not given."""
+        """A track from a table.
+
+        Parameters
+        ----------
+        table : columns ``time_s`` and ``gap_m`` (m, of the lowest point) or ``velocity_m_s`` (away from the wall).
+        sigma : noise of a position in m or of a velocity in m/s; estimated from the frames if not given.
+        scale_sigma : relative error that all speeds share, as from the time axis.
+
+        Raises
+        ------
+        InputError : for fewer than four frames.
+        """
         quantity = "gap" if "gap_m" in table else "velocity"
         value = table["gap_m" if quantity == "gap" else "velocity_m_s"].to_numpy(float)
         time = table["time_s"].to_numpy(float)

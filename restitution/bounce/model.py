@@ -143,10 +143,25 @@ def bounce(
     end: float = 1.0,
     tolerance: float = TOLERANCE,
 ) -> Trajectory:
-    """The trajectory of a sphere released over a wall, from time 0 to ``end`` (s).
+    """The trajectory of a sphere released over a wall; the equation of motion is in :mod:`restitution.bounce`.
 
-    The sphere comes to rest where the free flight of a rebound would rise by less than the film limit. Raises
-    :class:`InputError` for input that cannot be used and :class:`IntegrationError` where the integration fails.
+    Parameters
+    ----------
+    conditions : fluid and sphere in SI.
+    release : gap, speed, and what the fluid remembers of the way there.
+    closures : which forces act, and what happens at contact.
+    end : time in s at which it ends.
+    tolerance : relative error of a step of the integration.
+
+    Returns
+    -------
+    Gap (m), velocity (m/s, away from the wall) and energy in time, impacts, ``gap(t)``, ``apexes()``. The sphere
+    comes to rest where the free flight of a rebound would rise by less than the film limit.
+
+    Raises
+    ------
+    InputError : for input that cannot be used.
+    IntegrationError : where the integration fails.
     """
     closures = closures or Closures()
     touch = closures.contact_gap(conditions)

@@ -34,7 +34,20 @@ def names() -> list[str]:
 
 
 def read_case(given: str | Path) -> Case:
-    """The case of a file or of a shipped name; raises :class:`InputError` naming every field that is wrong."""
+    """A case to be run.
+
+    Parameters
+    ----------
+    given : path of a TOML file, or the name of a shipped case (:func:`names`).
+
+    Returns
+    -------
+    The case, complete: keys of its ``base`` and conditions of its ``record`` filled in.
+
+    Raises
+    ------
+    InputError : naming every field that is wrong, and every combination that cannot be run.
+    """
     path = find(given)
     content = _content(path)
     content.setdefault("name", path.stem)

@@ -39,7 +39,20 @@ def names() -> list[str]:
 
 
 def resource(name: str) -> Resource:
-    """What is known about a table; raises :class:`InputError` for an unknown name."""
+    """What is known about a shipped table: experiment, conditions, errors, provenance.
+
+    Parameters
+    ----------
+    name : one of :func:`names`, such as "gondret2002_st152".
+
+    Returns
+    -------
+    The entry of the data package; ``conditions`` has fluid and sphere in SI, ``quoted`` what the source states.
+
+    Raises
+    ------
+    InputError : for an unknown name, with the nearest known ones.
+    """
     return _pick(name, _shipped(), "dataset")
 
 
@@ -54,7 +67,20 @@ def schema_names() -> list[str]:
 
 
 def load(name: str) -> pd.DataFrame:
-    """The table of that name, in SI, its file checked against the recorded hash and its schema."""
+    """A shipped table, its file checked against the recorded hash and its schema.
+
+    Parameters
+    ----------
+    name : one of :func:`names`.
+
+    Returns
+    -------
+    A row a point, columns in SI with the unit in their names (``time_s``, ``gap_m``, ...).
+
+    Raises
+    ------
+    InputError : for an unknown name, a file that is not the recorded one, or one that breaks its schema.
+    """
     r = resource(name)
     defects = file_defects(folder() / r.path, r)
     if defects:
@@ -65,7 +91,15 @@ def load(name: str) -> pd.DataFrame:
 def load_track(name: str, sigma: float | None = None) -> Track:
     """A trajectory or settling record as a track.
 
-    Its noise, if ``sigma`` is not given, is what the frames show, but at least the stated error of digitisation.
+    Parameters
+    ----------
+    name : one of :func:`names`; what it was measured in, and by whom, is in :func:`resource`.
+    sigma : noise of a position in m (or of a velocity in m/s); by default what the frames show, but at least the
+        stated error of digitisation.
+
+    Raises
+    ------
+    InputError : for an unknown name or a table that is no track.
     """
     r = resource(name)
     if r.table not in ("trajectory", "settling"):

@@ -52,11 +52,30 @@ def find_impacts(
     h_film: float = H_FILM,
     seed: int = 0,
 ) -> Impacts:
-    """All impacts of a track.
+    """All impacts of a track: impact speed, St and e_eff with their errors, a row a contact.
 
-    ``stokes`` is the convention of the St reported; ``window_frames`` serves ``window`` and ``h_film`` (in
-    diameters) serves ``far`` only. A contact that cannot be evaluated gives no row but a note. Raises
-    :class:`InputError` where ``e_dry`` is not stated.
+    e_eff = rebound speed / impact speed, both under one definition of the speed
+    (:mod:`restitution.impacts.speed`); their errors come from the noise of the frames and from the
+    choice of window, and carry their correlation.
+
+    Parameters
+    ----------
+    track : positions or velocities in time.
+    conditions : fluid and sphere; ``sphere.e_dry`` must be stated.
+    speed : definition of the impact speed, "far", "contact" or "window".
+    stokes : convention of the St reported, a key of :mod:`restitution.stokes`.
+    record, kind : name and kind ("measured", "simulated") that every row carries.
+    window_frames : frames of the mean slope; for "window" only.
+    h_film : edge of the film in diameters; for "far" only.
+    seed : of the draws from which errors are taken.
+
+    Returns
+    -------
+    Rows in the schema of impacts; a contact that cannot be evaluated gives no row but a note.
+
+    Raises
+    ------
+    InputError : where e_dry is not stated, or the track has too few frames.
     """
     if conditions.sphere.e_dry is None:
         raise InputError(Defect("must be stated: impacts are compared by e_eff / e_dry", field="sphere.e_dry"))

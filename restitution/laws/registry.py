@@ -10,7 +10,22 @@ from restitution.laws.rebound import ReboundLaw
 
 
 def get(name: str, **parameters: float) -> Law:
-    """The law of that name, with its default parameters but those given."""
+    """A law by its name.
+
+    Parameters
+    ----------
+    name : one of :func:`names`.
+    parameters : values other than the defaults, within each parameter's bounds.
+
+    Returns
+    -------
+    The law, to be called with its variables; ``reference``, ``status``, ``validity`` and ``checks`` are its
+    attributes, ``parameters()`` says what each parameter is and where its default comes from.
+
+    Raises
+    ------
+    InputError : for an unknown name or parameter, or a value outside its bounds.
+    """
     try:
         law = REGISTRY[name]
     except KeyError:

@@ -51,11 +51,22 @@ def simulate(
     show: Callable[[str], None] | None = None,
     file: str = "",
 ) -> None:
-    """Run ``case`` and write its results into ``folder``.
+    """Run a case with the flow resolved and write its results; the files are those of the table above.
 
-    ``resume`` continues from the checkpoint in the folder, if it has one, and refuses that of another run. Raises
-    :class:`InputError` for a case that cannot be run and :class:`StoppedError` for a run that diverges or
-    cannot write; Ctrl-C is raised again once the checkpoint has been written.
+    Parameters
+    ----------
+    case : what is run; it needs ``[numerics]``.
+    folder : where the results go; made if need be.
+    resume : continue from the checkpoint in the folder, if it has one; that of another run is refused.
+    snapshots : write the flow for ParaView as well, every ``run.snapshot_interval``.
+    every_step : write ``motion.csv`` too, a row a step.
+    show : called with each line to be said; None for silence.
+    file : name of the case's file, for errors.
+
+    Raises
+    ------
+    InputError : for a case that cannot be run, or a checkpoint that is not its own.
+    StoppedError : for a run that diverges or cannot write. Ctrl-C is raised again once the checkpoint is written.
     """
     folder = Path(folder)
     run, key = ResolvedRun(case, file), checkpoint_key(case)

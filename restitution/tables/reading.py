@@ -32,8 +32,13 @@ def check_table(
 ) -> list[Defect]:
     """Every defect of a CSV file, in the order of the file; empty if it is valid.
 
-    ``columns`` maps columns of the schema to the file's own names; other columns are then ignored, while
-    without it an unknown column is a defect. ``scale`` multiplies a column before it is checked (mm to m: 1e-3).
+    Parameters
+    ----------
+    path : the file.
+    schema : columns with type, unit and constraints.
+    columns : the file's own names of the schema's columns; others are then ignored, while without it an unknown
+        column is a defect.
+    scale : factor of a column before it is checked (mm to m: 1e-3).
     """
     return _check(path, schema, columns, scale)[0]
 

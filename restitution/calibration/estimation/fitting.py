@@ -48,10 +48,20 @@ def estimate(
     near: Maximum | None = None,
     covariance: bool = True,
 ) -> Fit:
-    """Maximum (restricted) likelihood. ``restricted=False`` gives the plain maximum, whose value ranks laws.
+    """The maximum of the (restricted) likelihood of :mod:`.likelihood`, and intervals of its profile.
 
-    ``intervals`` may name the parameters that are to have one. ``near`` is the estimate of a similar
-    fit with the same parameters, to start from.
+    Parameters
+    ----------
+    plan : model and what is free.
+    observations : impacts, as :func:`restitution.calibration.read` gives them.
+    intervals : whether parameters get intervals, or the names of those that do.
+    restricted : False for the plain maximum, whose value ranks laws.
+    near : estimate of a similar fit with the same parameters, to start from.
+    covariance : whether the covariance is wanted.
+
+    Raises
+    ------
+    InputError : where the data cannot determine what is free.
     """
     likelihood = plan.likelihood(observations)
     parameters = likelihood.parameters

@@ -118,9 +118,18 @@ def _shaped(value: Any, St: NDArray) -> NDArray:
 def model_of(
     text: str, bounds: Mapping[str, tuple[float, float]] | None = None, convention: str | None = None
 ) -> ReboundModel:
-    """The model of a law's name, or of a formula of the user's own (see :mod:`.formula`).
+    """The model to fit: a law of the registry, or a formula of the user's own.
 
-    ``bounds`` and ``convention`` (of its St) belong to a formula; a law of the registry has its own.
+    Parameters
+    ----------
+    text : name of a rebound law, or an expression in St, e_dry and the parameters to be found, as
+        "e_dry*exp(-(a/St)**n)"; the grammar is in :mod:`.formula`.
+    bounds : low and high of each parameter of a formula; a law has its own.
+    convention : of the St of a formula.
+
+    Raises
+    ------
+    InputError : for an unknown law, a formula that breaks the grammar, parameters without bounds.
     """
     if text in laws.REGISTRY:
         law = laws.get(text)

@@ -25,10 +25,21 @@ from restitution.tables.schema import read_schema
 
 
 def read(paths: str | Path | Sequence[str | Path], how: Reading | None = None, **stated: Any) -> Observations:
-    """The impacts of all files, or of shipped records; raises :class:`InputError` with what is wrong and where.
+    """The impacts of files or of shipped records.
 
-    ``how`` the files are read may also be ``stated`` by single fields of a :class:`~.reading.Reading`, as in
-    ``read("my.csv", stokes="st", speed="far")``.
+    Parameters
+    ----------
+    paths : tables of impacts, camera tracks, digitised plots (CSV, JSON), or names of shipped records.
+    how : how the files are read; or
+    stated : its single fields, as in ``read("my.csv", stokes="st", speed="far")``: see :class:`~.reading.Reading`.
+
+    Returns
+    -------
+    Observations: e_eff, St, their errors and correlation, e_dry, source and labels, an entry an impact.
+
+    Raises
+    ------
+    InputError : with everything that is wrong, by file, row, field and value.
     """
     how = replace(how or Reading(), **stated)
     paths = [paths] if isinstance(paths, str | Path) else paths

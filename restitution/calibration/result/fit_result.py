@@ -191,7 +191,13 @@ def chain_of(posterior: Posterior) -> Chain:
 
 
 def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
-    """The record of a fit."""
+    """The record of a fit: what ``fit.json`` holds, and what :func:`~restitution.calibration.predict` takes.
+
+    Parameters
+    ----------
+    fit : of :func:`~restitution.calibration.estimate`.
+    posterior : a chain of draws, for bands by the posterior instead of the profile.
+    """
     likelihood, maximum, o = fit.likelihood, fit.maximum, fit.likelihood.observations
     model = likelihood.model
     named = isinstance(model, LawModel)

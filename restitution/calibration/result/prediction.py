@@ -58,10 +58,24 @@ def predict(
     levels: Mapping[str, str] | None = None,
     seed: int = 0,
 ) -> Prediction:
-    """The fitted law at ``St``, in the convention and speed of the data it was fitted to.
+    """e_eff of the fitted law, with intervals for the mean and for one more impact.
 
-    ``e_dry`` where it was not estimated (else taken from ``conditions``); ``levels`` name the level of separate
-    parameters, as ``{"material": "steel"}``.
+    Parameters
+    ----------
+    result : of a fit.
+    St : Stokes numbers in the convention and of the speed of the data it was fitted to; a number or 1-D.
+    e_dry : where it was not estimated; else taken from ``conditions``.
+    conditions : fluid and sphere.
+    levels : which level of separate parameters, as ``{"material": "steel"}``.
+    seed : of the draws.
+
+    Returns
+    -------
+    Values and intervals, an entry a St, and warnings where St lies outside the data.
+
+    Raises
+    ------
+    InputError : where e_dry or a level is missing or unknown.
     """
     law = Evaluation(result, e_dry, conditions, levels)
     St = np.atleast_1d(np.asarray(St, float))

@@ -128,7 +128,19 @@ def rank(
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> Ranking:
-    """Fit and score every plan on the same impacts; a law that cannot be fitted is set aside with its reason."""
+    """Fit and score plans on the same impacts: AIC, BIC, predicting each impact and each source from the others.
+
+    Parameters
+    ----------
+    plans : name and plan of each candidate.
+    observations : the impacts.
+    seed : of the draws.
+    progress : called with the name of each plan as it is begun.
+
+    Returns
+    -------
+    The candidates from best to worst; a law that cannot be fitted is set aside with its reason.
+    """
     scores, failed = [], {}
     for label, plan in plans:
         if progress:
