@@ -17,12 +17,10 @@ test: $(INSTALLED)
 	$(BIN)/python -m pytest
 
 report: $(INSTALLED)
-	$(BIN)/restitution report fig2 --out reports/fig2
-	$(BIN)/restitution report fig1 --out reports/fig1
+	$(BIN)/restitution report all
 
 report-full: $(INSTALLED)
-	$(BIN)/restitution report fig2 --full --out reports/fig2
-	$(BIN)/restitution report fig1 --out reports/fig1
+	$(BIN)/restitution report all --full
 
 format: $(INSTALLED)
 	$(BIN)/ruff check --fix .

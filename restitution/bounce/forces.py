@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache, lru_cache
 
 import numpy as np
@@ -106,7 +107,13 @@ def _memory(law: HistoryLaw | None, terms: history.Modes, r: float, nu: float) -
 
 def forces(conditions: Conditions, closures: Closures, end: float) -> Forces:
     """What the kernel reads for flights that last up to ``end`` seconds."""
-    return _force_numbers(conditions, closures, end)
+    return _force_numbers(conditions, _in_flight(closures), end)
+
+
+def _in_flight(closures: Closures) -> Closures:
+    """The closures without the numbers of the contact, on which no force depends: a search for e varies those."""
+    given = () if closures.black_box else None
+    return replace(closures, rebound=None, measured=given, e_dry=None, wake=None)
 
 
 def expected_reynolds(conditions: Conditions, speed: float) -> float:

@@ -9,7 +9,7 @@ from restitution.commands.console import show
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Declare ``report fig1`` and ``report fig2``."""
+    """Declare ``report fig1``, ``report fig2`` and ``report all``."""
     parser = commands.add_parser(
         "report", help="regenerate a comparison report", description="Comparison reports."
     )
@@ -32,18 +32,32 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "first (minutes), unchanged ones are not repeated; stopped ones are continued. Runs of your own cases "
         "(simulate CASE --out reports/runs/NAME) are scored beside them.",
     )
+    add.add_argument("--out", metavar="FOLDER", default="reports/fig2", help="where to write it (reports/fig2)")
+    _add_making(add)
+    add.set_defaults(run=run_fig2)
+
+    add = reports.add_parser(
+        "all",
+        help="both reports, fig2 first",
+        description="Both reports at once: what they share is computed once.",
+    )
+    add.add_argument("--out", metavar="FOLDER", default="reports", help="where to write fig1/ and fig2/ (reports)")
+    _add_making(add)
+    add.set_defaults(run=run_all)
+
+
+def _add_making(add: argparse.ArgumentParser) -> None:
+    """Which runs are made first, and what is shown beside them."""
     add.add_argument(
         "--full", action="store_true", help="make all shipped cases, not those of the figure alone (hours)"
     )
     add.add_argument("--fresh", action="store_true", help="repeat runs that have not changed")
-    add.add_argument("--out", metavar="FOLDER", default="reports/fig2", help="where to write it (reports/fig2)")
     add.add_argument(
         "--checks",
         metavar="FILE",
         help="verification to show (benchmarks/sphere.json, if there is one)",
     )
     _add_runs(add)
-    add.set_defaults(run=run_fig2)
 
 
 def _add_runs(parser: argparse.ArgumentParser) -> None:
@@ -65,6 +79,18 @@ def run_fig1(args: argparse.Namespace) -> None:
         raise InputError(Defect("names no folder", field="--out"))
     for name in report.write(args.out, Speed(args.speed), args.runs):
         show(str(Path(args.out) / name))
+
+
+def run_all(args: argparse.Namespace) -> int:
+    """Write both reports into folders within ``--out``; status 2 where a run stopped in error."""
+    from restitution.errors import Defect, InputError
+
+    if not args.out:
+        raise InputError(Defect("names no folder", field="--out"))
+    both, place = vars(args), Path(args.out)
+    status = run_fig2(argparse.Namespace(**both | {"out": str(place / "fig2")}))
+    run_fig1(argparse.Namespace(**both | {"out": str(place / "fig1"), "speed": "contact"}))
+    return status
 
 
 def run_fig2(args: argparse.Namespace) -> int:

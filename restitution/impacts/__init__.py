@@ -2,7 +2,7 @@
 
 Read :mod:`~restitution.impacts.branch` (the way in and out), :mod:`~restitution.impacts.speed` (which speed is
 meant), :mod:`~restitution.impacts.find` (impacts with their errors), :mod:`~restitution.impacts.bounces` (apexes
-and the times between contacts).
+and the times between contacts), :mod:`~restitution.impacts.shipped` (impacts of the shipped records).
 """
 
 from restitution.impacts.find import Impacts, find_impacts

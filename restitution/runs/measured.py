@@ -8,19 +8,17 @@ from __future__ import annotations
 
 from functools import cache
 
-from restitution import datasets
 from restitution.errors import InputError
-from restitution.impacts.find import find_impacts
+from restitution.impacts.shipped import impacts_of
 from restitution.stokes import Speed
 
 
 @cache
 def measured_restitution(record: str) -> tuple[float, ...]:
     """e_eff of bounce 1, 2, ... of a shipped record; raises :class:`InputError` for one without bounces."""
-    track, conditions = datasets.load_track(record), datasets.resource(record).conditions
     found: dict[int, float] = {}
     for speed in (Speed.CONTACT, Speed.FAR):
-        for row in find_impacts(track, conditions, speed).rows:
+        for row in impacts_of(record, speed).rows:
             if "e_eff" in row:
                 found[row["impact"]] = row["e_eff"]
     bounces = []

@@ -26,6 +26,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +55,20 @@ def residual_variance(slope: NDArray, e_sigma: NDArray, St_sigma: NDArray, corre
     return e_sigma**2 + from_St**2 - 2 * correlation * from_St * e_sigma
 
 
+class _Split(NamedTuple):
+    """Impacts with a rebound and those without: their places, and what of them no parameter changes."""
+
+    seen: NDArray
+    censored: NDArray
+    e: NDArray
+    upper: NDArray
+    source: NDArray
+    limited: NDArray
+    """Sources of the censored ones."""
+    alone: NDArray
+    """Whether a censored one is the only one of its source."""
+
+
 @dataclass(frozen=True)
 class Likelihood:
     """-ln L as a function of the values of ``parameters``.
@@ -74,16 +89,16 @@ class Likelihood:
     def __call__(self, values: Sequence[float] | NDArray) -> float:
         """-ln L; infinity where the law has no finite value."""
         f, variance, omega = self.moments(np.asarray(values, float))
-        if not (np.isfinite(f).all() and np.isfinite(variance).all()):
+        if not np.isfinite(f + variance).all():
             return np.inf
-        seen = self._seen
-        r, v, source = (self.observations.e - f)[seen], variance[seen], self.sources[seen]
-        z = (self.observations.upper - f)[~seen]
+        split = self._split
+        r, v, source = split.e - f[split.seen], variance[split.seen], split.source
+        z, v_z = split.upper - f[split.censored], variance[split.censored]
         if omega == 0:
-            below = self._log_below(z, variance[~seen]).sum() if len(z) else 0.0
+            below = self._log_below(z, v_z).sum() if len(z) else 0.0
             return -float(self._log_density(r, v).sum() + below)
         if self.robust:
-            return -sum(self._by_quadrature(s, r, v, z, variance[~seen], omega) for s in range(self._n_sources))
+            return -sum(self._by_quadrature(s, r, v, z, v_z, omega) for s in range(self._n_sources))
         result = -float(self._log_density(r, v).sum())
         W = np.bincount(source, 1 / v, self._n_sources)
         S = np.bincount(source, r / v, self._n_sources)
@@ -91,8 +106,7 @@ class Likelihood:
         result += float(np.sum(0.5 * np.log1p(omega**2 * W) - 0.5 * shrink * S**2))
         if not len(z):
             return result
-        limited, v_z = self.sources[~seen], variance[~seen]
-        alone = np.bincount(limited, minlength=self._n_sources)[limited] == 1
+        limited, alone = split.limited, split.alone
         # One limit in its source: the average of Phi over a normal offset is Phi again.
         s = limited[alone]
         result -= float(log_ndtr((z[alone] - shrink[s] * S[s]) / np.sqrt(v_z[alone] + shrink[s])).sum())
@@ -106,11 +120,18 @@ class Likelihood:
     def moments(self, values: NDArray) -> tuple[NDArray, NDArray, float]:
         """F and the variance of each impact without the offset, and the standard deviation of the offsets."""
         given = self._by_impact(values)
-        o = self.observations
         e_dry, tau, omega = given.pop("e_dry"), given.pop(SCATTER, 0.0), given.pop(OFFSET, 0.0)
-        f, slope = self.model(self._St, e_dry, given)
-        variance = residual_variance(slope, o.e_sigma, self._St_sigma, o.correlation) + tau**2
-        return f, np.maximum(variance, _LEAST_VARIANCE), float(omega)
+        f, of_errors = self._law(values, e_dry, given)
+        return f, np.maximum(of_errors + tau**2, _LEAST_VARIANCE), float(omega)
+
+    def _law(self, values: NDArray, e_dry: float | NDArray, given: Mapping) -> tuple[NDArray, NDArray]:
+        """The law, and the variance by the errors alone; kept while a search moves standard deviations only."""
+        key, kept, o = values[self._of_law].tobytes(), self._kept, self.observations
+        if key not in kept:
+            f, slope = self.model(self._St, e_dry, given)
+            kept.clear()
+            kept[key] = f, residual_variance(slope, o.e_sigma, self._St_sigma, o.correlation)
+        return kept[key]
 
     def offsets(self, values: NDArray) -> dict[str, tuple[float, float]]:
         """Offset of each source, as far as the data tell: conditional mean and standard deviation."""
@@ -158,6 +179,25 @@ class Likelihood:
     @cached_property
     def _seen(self) -> NDArray:
         return ~self.observations.censored
+
+    @cached_property
+    def _of_law(self) -> NDArray:
+        """Which parameters the law depends on."""
+        return np.array([p.name not in (SCATTER, OFFSET) for p in self.parameters], bool)
+
+    @cached_property
+    def _kept(self) -> dict[bytes, tuple[NDArray, NDArray]]:
+        return {}
+
+    @cached_property
+    def _split(self) -> _Split:
+        seen, sources = self._seen, self.sources
+        limited = sources[~seen]
+        alone = np.bincount(limited, minlength=self._n_sources)[limited] == 1
+        return _Split(
+            np.flatnonzero(seen), np.flatnonzero(~seen), self.observations.e[seen], self.observations.upper[~seen],
+            sources[seen], limited, alone,
+        )  # fmt: skip
 
     @cached_property
     def _St(self) -> NDArray:

@@ -78,9 +78,10 @@ class Restriction:
     def _information(self, values: NDArray) -> NDArray:
         tau, omega = self._deviations(values)
         w = 1 / np.maximum(self.variance + tau**2, 1e-24)
-        information = self.J.T @ (w[:, None] * self.J) + self.precision
+        weighted = w[:, None] * self.J
+        information = self.J.T @ weighted + self.precision
         if omega > 0:
-            sums = (w[:, None] * self.J).T @ self._members
+            sums = weighted.T @ self._members
             shrink = omega**2 / (1 + omega**2 * (w @ self._members))
             information = information - (sums * shrink) @ sums.T
         return information

@@ -14,7 +14,7 @@ are three or more.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -127,6 +127,7 @@ def rank(
     observations: Observations,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
+    intervals: bool | Collection[str] = True,
 ) -> Ranking:
     """Fit and score plans on the same impacts: AIC, BIC, predicting each impact and each source from the others.
 
@@ -136,6 +137,7 @@ def rank(
     observations : the impacts.
     seed : of the draws.
     progress : called with the name of each plan as it is begun.
+    intervals : whether parameters get intervals, or the names of those that do; half of the time goes into them.
 
     Returns
     -------
@@ -146,7 +148,7 @@ def rank(
         if progress:
             progress(label)
         try:
-            scores.append(score(label, plan, observations, seed))
+            scores.append(score(label, plan, observations, seed, intervals))
         except ConventionError:
             failed[label] = (
                 f"its Stokes number is {plan.model.convention}, that of the data {observations.convention}: fluid "
@@ -159,9 +161,11 @@ def rank(
     return Ranking(tuple(sorted(scores, key=lambda s: -s.elpd_loo)), failed)
 
 
-def score(label: str, plan: Plan, observations: Observations, seed: int = 0) -> Score:
+def score(
+    label: str, plan: Plan, observations: Observations, seed: int = 0, intervals: bool | Collection[str] = True
+) -> Score:
     """One law's scores."""
-    fit = estimate(plan, observations)
+    fit = estimate(plan, observations, intervals)
     plain = estimate(plan, observations, False, False, fit.maximum, covariance=False)
     k, n = len(fit.maximum.parameters), len(observations)
     log_likelihood = -plain.maximum.negative_log
@@ -181,7 +185,8 @@ def _left_out(plan: Plan, whole: Fit, out: NDArray) -> float:
     plan = replace(plan, offsets=OFFSET in names)
     # A level of a separate parameter may be gone with what is left out.
     near = whole.maximum if not plan.separate or len(plan.likelihood(rest).parameters) == len(names) else None
-    fit = estimate(plan, rest, intervals=False, near=near)
+    held = not any(p.mean for p in whole.maximum.parameters)  # nothing of the law is open: no covariance needed
+    fit = estimate(plan, rest, intervals=False, near=near, covariance=not held)
     return predictive(fit, whole.likelihood, out)
 
 
@@ -191,10 +196,10 @@ def predictive(fit: Fit, whole: Likelihood, out: NDArray) -> float:
     Normal: mean f + the offset known from the source, covariance of errors, scatter, what is open of the offset,
     and J C J^T of the parameters. Limits enter one by one, given the measured ones.
     """
-    values, C = fit.maximum.values, fit.maximum.covariance
-    o = whole.observations
+    values, o = fit.maximum.values, whole.observations
     f, variance, omega = whole.moments(values)
-    J = whole.jacobian(values)
+    of_law = np.array([p.mean for p in fit.maximum.parameters], bool)
+    J, C = whole.jacobian(values)[:, of_law], fit.maximum.covariance[np.ix_(of_law, of_law)]
     inside = ~out & ~o.censored
     same = (whole.sources[:, None] == whole.sources).astype(float)
     mean, cov = f.copy(), np.diag(variance) + omega**2 * same

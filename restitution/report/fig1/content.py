@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution import datasets, laws
-from restitution.impacts.find import find_impacts
+from restitution.impacts.shipped import impacts_of
 from restitution.laws.source_abstract_eq4 import READINGS
 from restitution.report.fig1 import scores as comparison
 from restitution.stokes import MEASURED_SPEEDS, Speed
@@ -100,7 +100,7 @@ def _everything() -> tuple:
         rows: list[dict] = []
         notes[str(definition)] = []
         for r in resources:
-            impacts = find_impacts(datasets.load_track(r.name), r.conditions, definition, "st", r.name, r.kind)
+            impacts = impacts_of(r.name, definition)
             rows += [row | _provenance(r) for row in impacts.rows]
             notes[str(definition)] += [f"{r.name}: {note}" for note in impacts.notes]
         columns = [*datasets.schema("impact").columns, *_provenance(resources[0])]
@@ -109,7 +109,7 @@ def _everything() -> tuple:
         scores.append(comparison.score(known, measured, conditions).assign(speed_definition=str(definition)))
     every = pd.concat(tables, ignore_index=True)
     judgements = judge(every, conditions, (*READINGS, *OTHERS))
-    whole = fig1_trajectories.gather([r.name for r in resources if r.kind == "measured"])
+    whole = fig1_trajectories.gather()
     return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements, whole
 
 

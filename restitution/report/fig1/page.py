@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from restitution import datasets, laws
-from restitution.impacts.find import find_impacts
+from restitution.impacts.shipped import impacts_of
 from restitution.laws.source_abstract_eq4 import READINGS
 from restitution.report.fig1 import content, trajectories
 from restitution.report.fig1.verdict import in_words, table
@@ -153,6 +153,6 @@ def _films() -> dict[float, list[str]]:
     """E_eff of the first three bounces of the 3 mm sphere, far from films of half, one and two times the usual."""
     name, table = content.SIMULATED_BY_ABSTRACT, {}
     for h in (H_FILM / 2, H_FILM, 2 * H_FILM):
-        impacts = find_impacts(datasets.load_track(name), datasets.resource(name).conditions, Speed.FAR, h_film=h)
+        impacts = impacts_of(name, Speed.FAR, h)
         table[h] = [f"{r['e_eff']:.2f} ± {r['e_eff_sigma']:.2f}" for r in impacts.rows[:3] if "e_eff" in r]
     return table

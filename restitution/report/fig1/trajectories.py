@@ -8,7 +8,6 @@ source.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -17,14 +16,14 @@ import numpy as np
 
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.estimation.rebound_model import model_of
-from restitution.calibration.reading.reading import Reading
 from restitution.calibration.result.fit_result import result_of
 from restitution.calibration.result.prediction import predict
 from restitution.calibration.result.ranking import Ranking, Score, rank
 from restitution.calibration.trajectories.fit import CLEAR, Measured, closures_of, observations
-from restitution.calibration.trajectories.recordings import read_recordings
 from restitution.calibration.trajectories.whole_trajectories import distance_d
-from restitution.report.fig1.verdict import FORMS
+from restitution.report.fig1.verdict import FORMS, SHOWN
+from restitution.report.records import READING
+from restitution.report.records import measured as measured_records
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,13 +66,13 @@ class Trajectories:
         return sum(len(r.time_s) + r.rest_frames for r in self.measured.records)
 
 
-def gather(names: Sequence[str]) -> Trajectories:
-    """All records of these names."""
-    how = Reading()
-    measured = Measured.of(read_recordings(names, how))
+def gather() -> Trajectories:
+    """All measured records."""
+    measured = measured_records()
     plans = [(name, Plan(model_of(name))) for name in FORMS]
     rankings = {
-        wake: rank(plans, observations(measured.trajectories[wake], how)) for wake in measured.trajectories
+        wake: rank(plans, observations(measured.trajectories[wake], READING), intervals=SHOWN)
+        for wake in measured.trajectories
     }
     return Trajectories(measured, rankings)
 

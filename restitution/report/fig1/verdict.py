@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 FORMS = ("eq4_exponential", "eq4_rational", "eq4_linear")
 """The forms of Eq. (4) that differ once K is fitted: at one e_dry the others are the same curves."""
+SHOWN = ("K",)
+"""Parameters whose intervals are shown."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,9 @@ def judge(every: pd.DataFrame, conditions: dict[str, Conditions], names: tuple[s
     for definition in dict.fromkeys(every.speed_definition):
         o = observations(every, definition, conditions)
         held = [(name, _plan(name, True)) for name in names]
-        judgements.append(Judgement(definition, rank(held, o), rank([(n, _plan(n, False)) for n in FORMS], o)))
+        fitted = [(name, _plan(name, False)) for name in FORMS]
+        rankings = (rank(plans, o, intervals=SHOWN) for plans in (held, fitted))
+        judgements.append(Judgement(definition, *rankings))
     return judgements
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from restitution import datasets
 from restitution.bounce.agreement import distance_from_contact_d
 from restitution.impacts.bounces import Bounces
-from restitution.impacts.find import find_impacts
+from restitution.impacts.shipped import impacts_of
 from restitution.report.fig2.content import MAIN, PUBLISHED, RECORD, SHORT, Fig2
 from restitution.report.fig2.scores import BOUNCES, Score, reference_apexes
 from restitution.report.page import number, percent
@@ -87,8 +87,7 @@ def _record_row(name: str, contact: str, found: Bounces | None, goal: Bounces | 
 
 def _far_speed(name: str) -> str:
     """Speed of the first approach of a record outside the film."""
-    track, conditions = datasets.load_track(name), datasets.resource(name).conditions
-    rows = [r for r in find_impacts(track, conditions, Speed.FAR).rows if r["impact"] == 1]
+    rows = [r for r in impacts_of(name, Speed.FAR).rows if r["impact"] == 1]
     return f"{rows[0]['impact_speed_m_s']:.3f}" if rows else ""
 
 

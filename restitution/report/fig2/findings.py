@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from restitution import datasets
-from restitution.impacts.find import find_impacts
+from restitution.impacts.shipped import impacts_of
 from restitution.report.fig2.content import IMPOSED, MAIN, RECORD, SOFT, Fig2
 from restitution.report.fig2.scores import Score
 from restitution.report.page import number, percent
@@ -51,7 +50,7 @@ def _main(score: Score) -> str:
 
 def _restitution(run: KeptRun) -> str:
     """e_eff far, bounce by bounce, beside the measured one and its error."""
-    rows = find_impacts(datasets.load_track(RECORD), datasets.resource(RECORD).conditions, Speed.FAR).rows
+    rows = impacts_of(RECORD, Speed.FAR).rows
     own = run.impacts[run.impacts.speed_definition == str(Speed.FAR)].set_index("impact").e_eff
     measured = {r["impact"]: (r["e_eff"], r["e_eff_sigma"]) for r in rows if "e_eff" in r}
     pairs = [(own[k], *found) for k, found in measured.items() if math.isfinite(own.get(k, math.nan))]

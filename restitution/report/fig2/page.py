@@ -8,7 +8,7 @@ import pandas as pd
 
 from restitution import datasets
 from restitution.bounce.agreement import UNTIL
-from restitution.impacts.find import find_impacts
+from restitution.impacts.shipped import impacts_of
 from restitution.report.fig2.bounce_table import main_rows, rows_of_other_records, run_row
 from restitution.report.fig2.content import MAIN, RECORD, SHORT, VERIFICATION, Fig2
 from restitution.report.fig2.findings import in_words
@@ -85,8 +85,7 @@ def _forces_off(off: pd.DataFrame) -> list[dict]:
 def _impacts(fig2: Fig2) -> list[dict]:
     """E_eff of each bounce, measured and simulated, by the same definitions and as the solver had it."""
     rows = []
-    track, conditions = datasets.load_track(RECORD), datasets.resource(RECORD).conditions
-    measured = {d: {r["impact"]: r for r in find_impacts(track, conditions, d).rows} for d in DEFINITIONS}
+    measured = {d: {r["impact"]: r for r in impacts_of(RECORD, d).rows} for d in MEASURED_SPEEDS}
     for impact in sorted({k for found in measured.values() for k in found}):
         found = {d: measured[d].get(impact, {}) for d in DEFINITIONS}
         rows.append(_impact_row("measured", impact, found, None))

@@ -121,16 +121,12 @@ def fitted_K() -> tuple[float, float, float]:
     """
     from restitution.calibration.estimation.plan import Plan
     from restitution.calibration.estimation.rebound_model import model_of
-    from restitution.calibration.reading.reading import Reading
-    from restitution.calibration.trajectories.fit import Measured, law_fit, observations
-    from restitution.calibration.trajectories.recordings import read_recordings
+    from restitution.calibration.trajectories.fit import law_fit, observations
+    from restitution.report.records import READING, measured
 
-    bouncing = (r for r in map(datasets.resource, datasets.names()) if r.table == "trajectory")
-    names = [r.name for r in bouncing if r.kind == "measured" and r.conditions.sphere.e_dry is not None]
-    how = Reading()
-    measured = Measured.of(read_recordings(names, how), (True,))
-    found = law_fit(Plan(model_of(FITTED_LAW)), observations(measured.trajectories[True], how)).maximum
-    K, low, high = (float(f"{x:.3g}") for x in (found.values[0], *found.intervals[0.95][0]))
+    found = observations(measured((True,)).trajectories[True], READING)
+    fit = law_fit(Plan(model_of(FITTED_LAW)), found).maximum
+    K, low, high = (float(f"{x:.3g}") for x in (fit.values[0], *fit.intervals[0.95][0]))
     return K, low, high
 
 
