@@ -22,7 +22,7 @@ def main():
     fit = fit_law(measured, Plan(model_of("eq4_exponential")), reading)
     result = fit.result()
 
-    restitutions = fit.found[0].restitutions
+    restitutions = fit.trajectories[0].restitutions
     for n, (e, sigma) in enumerate(restitutions, 1):
         print(f"bounce {n}: e = {e:.3f} +- {sigma:.3f}")
     print(result)
