@@ -194,7 +194,6 @@ def test_an_example_needs_nothing_but_the_faces(example):
     assert {m for m in own if m.count(".") > 1} <= {"restitution.calibration.trajectories"}
 
 
-@pytest.mark.skip(reason="the README's table of examples is not written yet")
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_the_readme_names_it(example):
     assert f"examples/{example.name}" in (ROOT / "README.md").read_text("utf-8")
