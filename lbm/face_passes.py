@@ -25,9 +25,11 @@ from numba import njit, prange
 
 from lbm import arguments
 from lbm.cache import kernel
+from lbm.equilibrium import equilibrium
 from lbm.errors import InputError, OutsideRangeWarning
 from lbm.faces import FACES, Face, FreeSlip, Inlet, NoSlip, Outlet, Periodic
-from lbm.lattice import BOUNCE, Lattice, incoming, outgoing
+from lbm.fields import sent_density
+from lbm.lattice import BOUNCE, Lattice, incoming
 from lbm.stencil import C, Q, W
 
 _RANK = {NoSlip: 2, Inlet: 1, Outlet: 0}
@@ -206,10 +208,7 @@ def _sent_density(populations, grid, parity, axis, high, density):
     for line in prange(density.shape[0]):
         for n in range(density.shape[1]):
             x, y, z = _cell(grid, axis, high, np.int64(line), n)
-            rho = 1.0
-            for k in range(Q):
-                rho += populations[outgoing(grid, parity, k, x, y, z)]
-            density[line, n] = rho
+            density[line, n] = sent_density(populations, grid, parity, x, y, z)
 
 
 @kernel
@@ -228,14 +227,6 @@ def _push(populations, grid, parity, axis, high, beaten_by, velocity, density, m
                     cu_beside = C[k, 0] * beside[0] + C[k, 1] * beside[1] + C[k, 2] * beside[2]
                     add = 6 * W[k] * (rho * cu + mean * 0.5 * (cu_beside - cu))
                     populations[incoming(grid, parity, k, x, y, z)] += add
-
-
-@njit
-def _equilibrium(k, rho, ux, uy, uz):
-    """Equilibrium population k, as deviation from its weight."""
-    cu = C[k, 0] * ux + C[k, 1] * uy + C[k, 2] * uz
-    uu = ux * ux + uy * uy + uz * uz
-    return W[k] * (rho - 1 + rho * (3 * cu + 4.5 * cu * cu - 1.5 * uu))
 
 
 @njit
@@ -259,17 +250,18 @@ def _open(populations, grid, parity, axis, high, beaten_by, outlets, density, ha
             x2 = _inside(x, grid.nx, outlets[0], outlets[1])
             y2 = _inside(y, grid.ny, outlets[2], outlets[3])
             z2 = _inside(z, grid.nz, outlets[4], outlets[5])
-            rho, jx, jy, jz = 1.0, half_force[0], half_force[1], half_force[2]
+            drho, jx, jy, jz = 0.0, half_force[0], half_force[1], half_force[2]
             for k in range(Q):
                 inner[k] = populations[incoming(grid, parity, k, x2, y2, z2)]
-                rho += inner[k]
+                drho += inner[k]
                 jx += C[k, 0] * inner[k]
                 jy += C[k, 1] * inner[k]
                 jz += C[k, 2] * inner[k]
+            rho = 1 + drho
             ux, uy, uz = jx / rho, jy / rho, jz / rho
-            rho_here = (2 * density + rho) / 3
+            drho_here = (2 * (density - 1) + drho) / 3
             for k in range(1, Q):
                 if _returns(grid, k, axis, high, beaten_by, x, y, z):
-                    stress = inner[k] - _equilibrium(k, rho, ux, uy, uz)
-                    here = _equilibrium(k, rho_here, ux, uy, uz)
+                    stress = inner[k] - equilibrium(k, drho, ux, uy, uz)
+                    here = equilibrium(k, drho_here, ux, uy, uz)
                     populations[incoming(grid, parity, k, x, y, z)] = here + stress

@@ -14,16 +14,10 @@ import numpy as np
 from numba import njit
 
 from lbm.cache import kernel
+from lbm.equilibrium import equilibrium
 from lbm.lattice import incoming
-from lbm.stencil import C, Q, W
+from lbm.stencil import C, Q
 from lbm.surface import inside, inside_any, wrapped
-
-
-@njit
-def equilibrium(k, drho, ux, uy, uz):
-    """Deviation from rest of the second-order equilibrium."""
-    cu = 3 * (C[k, 0] * ux + C[k, 1] * uy + C[k, 2] * uz)
-    return W[k] * (drho + (1 + drho) * (cu + 0.5 * cu * cu - 1.5 * (ux * ux + uy * uy + uz * uz)))
 
 
 @kernel(parallel=False)

@@ -19,9 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lbm import arguments
 from lbm.contact import Contact, Impact
 from lbm.errors import InputError
 from lbm.exchange import exchange
+from lbm.faces import FACES
 from lbm.film import Film
 from lbm.lattice import BOUNCE, PERIODIC, Lattice
 from lbm.refill import refill
@@ -87,16 +89,16 @@ class Spheres:
     ):
         if interpolation not in SCHEMES:
             raise InputError(f"interpolation {interpolation!r} unknown; known: {', '.join(SCHEMES)}")
-        self.radii = np.array([_positive("radius", s.radius) for s in spheres])
+        self.radii = np.array([arguments.positive("radius", s.radius) for s in spheres])
         if self.radii.size == 0 or self.radii.min() < _SMALLEST_RADIUS:
             raise InputError(f"radius: at least {_SMALLEST_RADIUS:g} cells are needed to resolve a sphere")
         self.volumes = 4 / 3 * np.pi * self.radii**3
-        self.masses = self.volumes * [_positive("density", s.density) for s in spheres]
-        self.centres = _vectors("position", [s.position for s in spheres])
-        self.velocities = _vectors("velocity", [s.velocity for s in spheres])
-        self.spins = _vectors("spin", [s.spin for s in spheres])
+        self.masses = self.volumes * [arguments.positive("density", s.density) for s in spheres]
+        self.centres = np.array([arguments.vector("position", s.position) for s in spheres])
+        self.velocities = np.array([arguments.vector("velocity", s.velocity) for s in spheres])
+        self.spins = np.array([arguments.vector("spin", s.spin) for s in spheres])
         self.spin_changes = np.zeros_like(self.spins)
-        self.gravity = _vectors("gravity", [gravity])[0]
+        self.gravity = arguments.vector("gravity", gravity).copy()
         self.film, self.contact, self.drive = film, contact, drive
         self.fraction = fraction
         self.scheme = SCHEMES[interpolation]
@@ -126,7 +128,7 @@ class Spheres:
             for face in np.flatnonzero(faces != PERIODIC):
                 gap = _gap(centre, r, face, grid.shape)
                 if gap < 0:
-                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {_FACES[face]}")
+                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {FACES[face]}")
             for other in range(s):
                 apart = self.centres[other] - centre
                 apart -= np.where(faces[::2] == PERIODIC, grid.shape * np.round(apart / grid.shape), 0.0)
@@ -153,7 +155,7 @@ class Spheres:
         given = None if self._free else self.drive(step + 1, nearest)
         v = self.velocities[s].copy()
         if given is not None:
-            new = _vectors("drive", [given])[0]
+            new = arguments.vector("drive", given)
             self.centres[s] += 0.5 * (v + new)
         else:
             self._free = True
@@ -184,7 +186,7 @@ class Spheres:
             new[axis] = sign * speed
             centre[axis] = self.centres[s, axis] + sign * (after - gap)
             self.impacts += [
-                SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=_FACES[f]) for i in impacts
+                SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=FACES[f]) for i in impacts
             ]
         self.centres[s] = centre
         shell = 0.4 * self.volumes[s] * radius**2
@@ -211,7 +213,7 @@ class Spheres:
             "motion": np.hstack(self._moving()),
             "at_walls": np.array([motion.numbers() for motion in self._at_walls.values()]),
             "impacts": np.array(
-                [(i.step, i.speed_in, i.speed_out, i.sphere, _FACES.index(i.face)) for i in self.impacts]
+                [(i.step, i.speed_in, i.speed_out, i.sphere, FACES.index(i.face)) for i in self.impacts]
             ).reshape(-1, 5),
             "free": np.array([self._free]),
             "tracks": np.array(self._tracks),
@@ -227,14 +229,11 @@ class Spheres:
         for motion, numbers in zip(self._at_walls.values(), state["at_walls"], strict=True):
             motion.remember(numbers)
         self.impacts = [
-            SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=_FACES[int(row[4])])
+            SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=FACES[int(row[4])])
             for row in state["impacts"]
         ]
         self._free = bool(state["free"][0])
         self._tracks = [[tuple(float(x) for x in row) for row in track] for track in state["tracks"]]
-
-
-_FACES = ("x-", "x+", "y-", "y+", "z-", "z+")
 
 
 def _away(face: int) -> int:
@@ -245,16 +244,3 @@ def _away(face: int) -> int:
 def _gap(centre: np.ndarray, radius: float, face: int, shape: tuple[int, int, int]) -> float:
     axis = face // 2
     return float(centre[axis] - radius if face % 2 == 0 else shape[axis] - centre[axis] - radius)
-
-
-def _positive(name: str, value: float) -> float:
-    if not (math.isfinite(value) and value > 0):
-        raise InputError(f"{name} = {value!r}: must be finite and greater than 0")
-    return float(value)
-
-
-def _vectors(name: str, given) -> np.ndarray:
-    vectors = np.array(given, dtype=float)
-    if vectors.ndim != 2 or vectors.shape[1] != 3 or not np.isfinite(vectors).all():
-        raise InputError(f"{name} = {given!r}: give 3 finite components")
-    return vectors
