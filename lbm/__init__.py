@@ -16,11 +16,12 @@ from lbm.bodies import Body
 from lbm.errors import DivergenceError, InputError, OutputError, OutsideRangeWarning
 from lbm.faces import FreeSlip, Inlet, NoSlip, Outlet, Periodic
 from lbm.fixed_body import FixedBody
+from lbm.flow import Flow
 from lbm.rates import Rates
 from lbm.scales import FlowScales, Scales
 from lbm.simulation import Simulation
 
 __all__ = [
-    "Body", "DivergenceError", "FixedBody", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip", "Outlet",
-    "OutputError", "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
+    "Body", "DivergenceError", "FixedBody", "Flow", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip",
+    "Outlet", "OutputError", "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
 ]  # fmt: skip

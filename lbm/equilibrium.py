@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from numba import njit
-
+from lbm.cache import inlined
 from lbm.stencil import C, W
 
 
-@njit
+@inlined
 def equilibrium(k, drho, ux, uy, uz):
     """``w_k (drho + rho (3 c.u + 9/2 (c.u)^2 - 3/2 u.u))``, the deviation from rest, with rho = 1 + ``drho``."""
     cu = 3 * (C[k, 0] * ux + C[k, 1] * uy + C[k, 2] * uz)

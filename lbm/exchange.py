@@ -13,30 +13,27 @@ from numba import njit, prange
 from lbm.cache import kernel
 from lbm.fields import sent_density
 from lbm.lattice import outgoing
-from lbm.reflection import exchange_link
+from lbm.reflection import Link, exchange_link
 from lbm.stencil import C, Q
-from lbm.surface import REACH, cut, inside, inside_any, wrapped
+from lbm.surface import REACH, cut, inside, inside_any, surface_velocity, wrapped
 
 
 @kernel
-def exchange(populations, grid, parity, scheme, centres, radii, velocities, spins, s, sums):
+def exchange(populations, grid, parity, scheme, surfaces, s, sums):
     """Reflect all links of sphere ``s``; its ``sums`` (planes, 6) get force and torque plane by plane.
 
     Sums over planes are added in their order by the caller, so they do not depend on the number of threads.
     """
-    radius = radii[s]
-    first = np.int64(math.floor(centres[s, 2] - radius - REACH - 0.5))
+    first = np.int64(math.floor(surfaces.centres[s, 2] - surfaces.radii[s] - REACH - 0.5))
     for plane in prange(sums.shape[0]):
         for i in range(6):
             sums[plane, i] = 0.0
-        _exchange_plane(
-            populations, grid, parity, scheme, centres, radii, velocities[s], spins[s], s,
-            first + np.int64(plane), sums[plane],
-        )  # fmt: skip
+        _exchange_plane(populations, grid, parity, scheme, surfaces, s, first + np.int64(plane), sums[plane])
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def _exchange_plane(populations, grid, parity, scheme, centres, radii, velocity, spin, s, plane, sums):
+def _exchange_plane(populations, grid, parity, scheme, surfaces, s, plane, sums):
+    centres, radii = surfaces.centres, surfaces.radii
     radius, reach = radii[s], radii[s] + REACH
     cx, cy, cz = centres[s, 0], centres[s, 1], centres[s, 2]
     z = wrapped(plane, grid.nz, grid.z_low)
@@ -70,13 +67,10 @@ def _exchange_plane(populations, grid, parity, scheme, centres, radii, velocity,
                     rho = sent_density(populations, grid, parity, x, y, z)
                 q = cut(dx, dy, dz, k, radius)
                 rx, ry, rz = dx + q * C[k, 0], dy + q * C[k, 1], dz + q * C[k, 2]
-                u = (
-                    velocity[0] + spin[1] * rz - spin[2] * ry,
-                    velocity[1] + spin[2] * rx - spin[0] * rz,
-                    velocity[2] + spin[0] * ry - spin[1] * rx,
-                )
+                u = surface_velocity(surfaces, s, rx, ry, rz)
                 behind = _solid_behind(grid, cell, row, plane, k, centres, radii)
-                fx, fy, fz = exchange_link(populations, grid, parity, scheme, x, y, z, k, q, u, rho, behind)
+                link = Link(x, y, z, k, q)
+                fx, fy, fz = exchange_link(populations, grid, parity, scheme, link, u, rho, behind)
                 # What was sent into the sphere goes no further: its cells are swept too, and stay at rest.
                 populations[outgoing(grid, parity, k, x, y, z)] = 0.0
                 sums[0] += fx

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, prange
 
-from lbm.cache import kernel
+from lbm.cache import inlined, kernel
 from lbm.lattice import Lattice, incoming, lend, outgoing, row_starts
 from lbm.memory import load_cell
 from lbm.stencil import C, Q, W
@@ -31,7 +31,7 @@ def moments_of(f):
     return rho, jx, jy, jz
 
 
-@njit
+@inlined
 def sent_density(populations, grid, parity, x, y, z):
     """Density of the cell (x, y, z) after the last collision, of the populations that it has sent."""
     rho = 1.0

@@ -21,7 +21,7 @@ from lbm.cache import kernel
 from lbm.errors import InputError
 from lbm.fields import sent_density
 from lbm.lattice import PERIODIC, SLIP, Grid, Lattice
-from lbm.reflection import LINEAR, exchange_link
+from lbm.reflection import LINEAR, Link, exchange_link
 from lbm.stencil import C, Q
 
 __all__ = ["FixedBody"]
@@ -106,7 +106,7 @@ class FixedBody(Body):
         self.fraction = np.concatenate(fractions)
         self._levers = self.links[:, :3] + 0.5 + self.fraction[:, None] * C[self.links[:, 3]] - self.origin
         for axis, n in enumerate(grid.shape):
-            if _faces(grid)[axis][0] == PERIODIC:
+            if grid.faces[2 * axis] == PERIODIC:
                 self._levers[:, axis] -= n * np.round(self._levers[:, axis] / n)
         self._sums = np.zeros((-(-len(self.links) // _CHUNK), 6))
         self._given = None  # the links hold what was used of it
@@ -136,13 +136,10 @@ class FixedBody(Body):
         self.force, self.torque = state["force"], state["torque"]
 
 
-def _faces(grid: Grid) -> tuple[tuple[int, int], ...]:
-    return (grid.x_low, grid.x_high), (grid.y_low, grid.y_high), (grid.z_low, grid.z_high)
-
-
 def _with_surroundings(solid: np.ndarray, grid: Grid) -> np.ndarray:
     """``solid`` and one layer around it: what a link through a face ends in; beyond a wall, nothing."""
-    for axis, kinds in enumerate(_faces(grid)):
+    for axis in range(3):
+        kinds = grid.faces[2 * axis : 2 * axis + 2]
         first, last = solid.take([0], axis), solid.take([-1], axis)
         layers = [
             {PERIODIC: image, SLIP: mirror}.get(kind, np.zeros_like(mirror))
@@ -166,9 +163,8 @@ def _reflect(populations, grid, parity, links, fraction, u, levers, sums):
         for link in range(first, min(first + _CHUNK, links.shape[0])):
             x, y, z, k = links[link]
             rho = sent_density(populations, grid, parity, x, y, z) if moves else 0.0
-            px, py, pz = exchange_link(
-                populations, grid, parity, LINEAR, x, y, z, k, fraction[link], u, rho, False
-            )  # fmt: skip
+            cut = Link(x, y, z, k, fraction[link])
+            px, py, pz = exchange_link(populations, grid, parity, LINEAR, cut, u, rho, False)
             rx, ry, rz = levers[link]
             fx += px
             fy += py

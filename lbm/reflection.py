@@ -25,20 +25,22 @@ of the deviations from rest: a body that touches a wall is not pressed against i
 
 from __future__ import annotations
 
-import numpy as np
-from numba import njit
+from typing import NamedTuple
 
+import numpy as np
+
+from lbm.cache import inlined
 from lbm.lattice import incoming, outgoing
 from lbm.stencil import OPPOSITE, C, W
 
 
-@njit(forceinline=True)
+@inlined
 def central_linear(q, sent, sent_back, arrived, push):
     """``push`` is 6 w_k rho c_k.u_w."""
     return sent + ((1 - 2 * q) * (arrived - sent_back) - 2 * push) / (1 + 2 * q)
 
 
-@njit(forceinline=True)
+@inlined
 def linear(q, sent, sent_back, arrived, push):
     """``push`` is 6 w_k rho c_k.u_w."""
     if q < 0.5:
@@ -51,7 +53,7 @@ SCHEMES = {"central-linear": CENTRAL_LINEAR, "linear": LINEAR}
 """Schemes by name."""
 
 
-@njit(forceinline=True)
+@inlined
 def reflect(scheme, q, sent, sent_back, arrived, push):
     """The population that comes back, by one of :data:`SCHEMES`."""
     if scheme == CENTRAL_LINEAR:
@@ -59,13 +61,24 @@ def reflect(scheme, q, sent, sent_back, arrived, push):
     return linear(q, sent, sent_back, arrived, push)
 
 
-@njit(forceinline=True, error_model="numpy", fastmath={"contract"})
-def exchange_link(populations, grid, parity, scheme, x, y, z, k, q, u, rho, solid_behind):
-    """Reflect the link along c_k of the cell (x, y, z); the momentum that the body takes there, 3 components.
+class Link(NamedTuple):
+    """The link of the fluid cell (x, y, z) along c_k, cut by the surface at the fraction q of its length."""
+
+    x: int
+    y: int
+    z: int
+    k: int
+    q: float
+
+
+@inlined
+def exchange_link(populations, grid, parity, scheme, link, u, rho, solid_behind):
+    """Reflect a :class:`Link`; the momentum that the body takes there, 3 components.
 
     ``u`` is the surface's velocity where the link meets it, ``rho`` the density of the cell, which counts only
     if the surface moves. With ``solid_behind`` nothing arrives from behind: the surface is taken half-way.
     """
+    x, y, z, k, q = link
     back = OPPOSITE[k]
     sent = np.float64(populations[outgoing(grid, parity, k, x, y, z)])
     sent_back = np.float64(populations[outgoing(grid, parity, back, x, y, z)])

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lbm import arguments
+from lbm.bodies import Body
 from lbm.contact import Contact, Impact
 from lbm.errors import InputError
 from lbm.exchange import exchange
@@ -29,7 +30,7 @@ from lbm.lattice import BOUNCE, PERIODIC, Lattice
 from lbm.refill import refill
 from lbm.reflection import SCHEMES
 from lbm.sampling import sampled
-from lbm.surface import REACH
+from lbm.surface import REACH, Surfaces
 from lbm.wall_motion import FRACTION, motion_at_wall
 
 Drive = Callable[[float, float], Sequence[float] | None]
@@ -61,7 +62,7 @@ class SphereImpact(Impact):
     face: str = ""
 
 
-class Spheres:
+class Spheres(Body):
     """Moving spheres for one :class:`lbm.Simulation`; lattice units.
 
     Parameters
@@ -121,7 +122,7 @@ class Spheres:
         if step > 0:
             return
         grid = lattice.grid
-        faces = np.array([grid.x_low, grid.x_high, grid.y_low, grid.y_high, grid.z_low, grid.z_high])
+        faces = np.array(grid.faces)
         for s, (r, centre) in enumerate(zip(self.radii, self.centres, strict=True)):
             if 2 * (r + REACH) > min(grid.shape):
                 raise InputError(f"sphere {s}: diameter {2 * r:g} cells in a box of {grid.shape}: enlarge the box")
@@ -138,18 +139,18 @@ class Spheres:
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Exchange momentum, move, refill."""
         grid, populations, parity = lattice.grid, lattice.populations, lattice.parity
-        surfaces = self.centres, self.radii, self.velocities, self.spins
+        surfaces = Surfaces(self.centres, self.radii, self.velocities, self.spins)
         for s, sums in enumerate(self._sums):
-            exchange(populations, grid, parity, self.scheme, *surfaces, s, sums)
+            exchange(populations, grid, parity, self.scheme, surfaces, s, sums)
             self.forces[s], self.torques[s] = np.add.reduce(sums[:, :3]), np.add.reduce(sums[:, 3:])
         before = self.centres.copy()
         for s in range(len(self.radii)):
             self._move(s, float(step), grid)
         for s in range(len(self.radii)):
-            refill(populations, grid, parity, before, *surfaces, s)
+            refill(populations, grid, parity, before, surfaces, s)
 
     def _move(self, s: int, step: float, grid) -> None:
-        walls = [f for f, kind in enumerate(grid[6:]) if kind == BOUNCE]
+        walls = [f for f, kind in enumerate(grid.faces) if kind == BOUNCE]
         gaps = {f: _gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls}
         nearest = min(gaps.values(), default=math.inf)
         given = None if self._free else self.drive(step + 1, nearest)
