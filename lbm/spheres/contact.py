@@ -17,6 +17,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from lbm import arguments
 from lbm.errors import InputError
 from lbm.spheres.sampling import sampled
 
@@ -52,7 +53,7 @@ class FilmRebound:
     free_fall: float
 
     def __post_init__(self) -> None:
-        _positive(edge=self.edge)
+        arguments.positive("edge", self.edge)
         if not self.free_fall >= 0:
             raise InputError(f"free_fall = {self.free_fall:g}: must not be negative")
 
@@ -78,7 +79,7 @@ class DryRebound:
     added_mass: float
 
     def __post_init__(self) -> None:
-        _positive(e_dry=self.e_dry)
+        arguments.positive("e_dry", self.e_dry)
         if self.e_dry > 1:
             raise InputError(f"e_dry = {self.e_dry:g}: must not exceed 1")
         if not self.added_mass >= 0:
@@ -106,7 +107,7 @@ class SoftContact:
 
         k = m (pi^2 + ln^2 e)/T^2, c = -2 m ln e/T, from the damped oscillator's half period.
         """
-        _positive(e_dry=e_dry, mass=mass, duration=duration)
+        _check(e_dry, mass, duration)
         stiffness = mass * (math.pi**2 + math.log(e_dry) ** 2) / duration**2
         damping = -2 * mass * math.log(e_dry) / duration
         return cls(lambda overlap, rate, _: max(0.0, stiffness * overlap - damping * rate), duration)
@@ -118,7 +119,7 @@ class SoftContact:
         Coefficients of Ray, Kempe & Frohlich (2015) as printed by Biegert, Vowinckel & Meiburg,
         J. Comput. Phys. 340 (2017) 105, appendix B; they give e_dry to 1.3 % above e_dry = 0.7.
         """
-        _positive(e_dry=e_dry, mass=mass, duration=duration)
+        _check(e_dry, mass, duration)
         eta, alpha, tau = math.log(e_dry) ** 2, 1.111, 3.218
         scale = alpha**2 * tau**2
         damping = (-0.5 * 0.744 * eta + math.sqrt(0.25 * 0.744**2 * eta**2 + scale * eta)) / scale
@@ -151,15 +152,9 @@ def lattice_added_mass(diameter: float) -> float:
     C = 0.8031 - 1.33/diameter^(3/4). Potential flow gives (3/2) zeta(3) - 1 = 0.8031; the rest is what
     ``benchmarks/added_mass.py`` measures on the lattice, 8 to 24 cells a diameter, within 0.03.
     """
-    return 0.8030853547 - 1.33 / _positive_number(diameter) ** 0.75
+    return 0.8030853547 - 1.33 / arguments.positive("diameter", diameter) ** 0.75
 
 
-def _positive_number(value: float) -> float:
-    _positive(diameter=value)
-    return value
-
-
-def _positive(**values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0):
-            raise InputError(f"{name} = {value:g}: must be finite and greater than 0")
+def _check(e_dry: float, mass: float, duration: float) -> None:
+    for name, value in {"e_dry": e_dry, "mass": mass, "duration": duration}.items():
+        arguments.positive(name, value)

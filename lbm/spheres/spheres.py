@@ -20,16 +20,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lbm.bodies.reflection import SCHEMES
+from lbm import arguments
+from lbm.bodies import Body
+from lbm.contact import Contact, Impact
 from lbm.errors import InputError
-from lbm.fluid.lattice import BOUNCE, PERIODIC, Lattice
-from lbm.spheres.contact import Contact, Impact
-from lbm.spheres.exchange import exchange
-from lbm.spheres.film import Film
-from lbm.spheres.refill import refill
-from lbm.spheres.sampling import sampled
-from lbm.spheres.surface import REACH
-from lbm.spheres.wall_motion import FRACTION, motion_at_wall
+from lbm.exchange import exchange
+from lbm.faces import FACES
+from lbm.film import Film
+from lbm.lattice import BOUNCE, PERIODIC, Lattice
+from lbm.refill import refill
+from lbm.reflection import SCHEMES
+from lbm.sampling import sampled
+from lbm.surface import REACH, Surfaces
+from lbm.wall_motion import FRACTION, motion_at_wall
 
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
@@ -60,7 +63,7 @@ class SphereImpact(Impact):
     face: str = ""
 
 
-class Spheres:
+class Spheres(Body):
     """Moving spheres for one :class:`lbm.Simulation`; lattice units.
 
     Parameters
@@ -88,16 +91,16 @@ class Spheres:
     ):
         if interpolation not in SCHEMES:
             raise InputError(f"interpolation {interpolation!r} unknown; known: {', '.join(SCHEMES)}")
-        self.radii = np.array([_positive("radius", s.radius) for s in spheres])
+        self.radii = np.array([arguments.positive("radius", s.radius) for s in spheres])
         if self.radii.size == 0 or self.radii.min() < _SMALLEST_RADIUS:
             raise InputError(f"radius: at least {_SMALLEST_RADIUS:g} cells are needed to resolve a sphere")
         self.volumes = 4 / 3 * np.pi * self.radii**3
-        self.masses = self.volumes * [_positive("density", s.density) for s in spheres]
-        self.centres = _vectors("position", [s.position for s in spheres])
-        self.velocities = _vectors("velocity", [s.velocity for s in spheres])
-        self.spins = _vectors("spin", [s.spin for s in spheres])
+        self.masses = self.volumes * [arguments.positive("density", s.density) for s in spheres]
+        self.centres = np.array([arguments.vector("position", s.position) for s in spheres])
+        self.velocities = np.array([arguments.vector("velocity", s.velocity) for s in spheres])
+        self.spins = np.array([arguments.vector("spin", s.spin) for s in spheres])
         self.spin_changes = np.zeros_like(self.spins)
-        self.gravity = _vectors("gravity", [gravity])[0]
+        self.gravity = arguments.vector("gravity", gravity).copy()
         self.film, self.contact, self.drive = film, contact, drive
         self.fraction = fraction
         self.scheme = SCHEMES[interpolation]
@@ -120,14 +123,14 @@ class Spheres:
         if step > 0:
             return
         grid = lattice.grid
-        faces = np.array([grid.x_low, grid.x_high, grid.y_low, grid.y_high, grid.z_low, grid.z_high])
+        faces = np.array(grid.faces)
         for s, (r, centre) in enumerate(zip(self.radii, self.centres, strict=True)):
             if 2 * (r + REACH) > min(grid.shape):
                 raise InputError(f"sphere {s}: diameter {2 * r:g} cells in a box of {grid.shape}: enlarge the box")
             for face in np.flatnonzero(faces != PERIODIC):
                 gap = _gap(centre, r, face, grid.shape)
                 if gap < 0:
-                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {_FACES[face]}")
+                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {FACES[face]}")
             for other in range(s):
                 apart = self.centres[other] - centre
                 apart -= np.where(faces[::2] == PERIODIC, grid.shape * np.round(apart / grid.shape), 0.0)
@@ -137,24 +140,24 @@ class Spheres:
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Exchange momentum, move, refill."""
         grid, populations, parity = lattice.grid, lattice.populations, lattice.parity
-        surfaces = self.centres, self.radii, self.velocities, self.spins
+        surfaces = Surfaces(self.centres, self.radii, self.velocities, self.spins)
         for s, sums in enumerate(self._sums):
-            exchange(populations, grid, parity, self.scheme, *surfaces, s, sums)
+            exchange(populations, grid, parity, self.scheme, surfaces, s, sums)
             self.forces[s], self.torques[s] = np.add.reduce(sums[:, :3]), np.add.reduce(sums[:, 3:])
         before = self.centres.copy()
         for s in range(len(self.radii)):
             self._move(s, float(step), grid)
         for s in range(len(self.radii)):
-            refill(populations, grid, parity, before, *surfaces, s)
+            refill(populations, grid, parity, before, surfaces, s)
 
     def _move(self, s: int, step: float, grid) -> None:
-        walls = [f for f, kind in enumerate(grid[6:]) if kind == BOUNCE]
+        walls = [f for f, kind in enumerate(grid.faces) if kind == BOUNCE]
         gaps = {f: _gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls}
         nearest = min(gaps.values(), default=math.inf)
         given = None if self._free else self.drive(step + 1, nearest)
         v = self.velocities[s].copy()
         if given is not None:
-            new = _vectors("drive", [given])[0]
+            new = arguments.vector("drive", given)
             self.centres[s] += 0.5 * (v + new)
         else:
             self._free = True
@@ -185,7 +188,7 @@ class Spheres:
             new[axis] = sign * speed
             centre[axis] = self.centres[s, axis] + sign * (after - gap)
             self.impacts += [
-                SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=_FACES[f]) for i in impacts
+                SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=FACES[f]) for i in impacts
             ]
         self.centres[s] = centre
         shell = 0.4 * self.volumes[s] * radius**2
@@ -212,7 +215,7 @@ class Spheres:
             "motion": np.hstack(self._moving()),
             "at_walls": np.array([motion.numbers() for motion in self._at_walls.values()]),
             "impacts": np.array(
-                [(i.step, i.speed_in, i.speed_out, i.sphere, _FACES.index(i.face)) for i in self.impacts]
+                [(i.step, i.speed_in, i.speed_out, i.sphere, FACES.index(i.face)) for i in self.impacts]
             ).reshape(-1, 5),
             "free": np.array([self._free]),
             "tracks": np.array(self._tracks),
@@ -228,14 +231,11 @@ class Spheres:
         for motion, numbers in zip(self._at_walls.values(), state["at_walls"], strict=True):
             motion.remember(numbers)
         self.impacts = [
-            SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=_FACES[int(row[4])])
+            SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=FACES[int(row[4])])
             for row in state["impacts"]
         ]
         self._free = bool(state["free"][0])
         self._tracks = [[tuple(float(x) for x in row) for row in track] for track in state["tracks"]]
-
-
-_FACES = ("x-", "x+", "y-", "y+", "z-", "z+")
 
 
 def _away(face: int) -> int:
@@ -246,16 +246,3 @@ def _away(face: int) -> int:
 def _gap(centre: np.ndarray, radius: float, face: int, shape: tuple[int, int, int]) -> float:
     axis = face // 2
     return float(centre[axis] - radius if face % 2 == 0 else shape[axis] - centre[axis] - radius)
-
-
-def _positive(name: str, value: float) -> float:
-    if not (math.isfinite(value) and value > 0):
-        raise InputError(f"{name} = {value!r}: must be finite and greater than 0")
-    return float(value)
-
-
-def _vectors(name: str, given) -> np.ndarray:
-    vectors = np.array(given, dtype=float)
-    if vectors.ndim != 2 or vectors.shape[1] != 3 or not np.isfinite(vectors).all():
-        raise InputError(f"{name} = {given!r}: give 3 finite components")
-    return vectors
