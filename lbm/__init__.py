@@ -15,8 +15,7 @@ The package knows nothing of :mod:`restitution`.
 from lbm.bodies.body import Body
 from lbm.bodies.fixed_body import FixedBody
 from lbm.errors import DivergenceError, InputError, OutputError, OutsideRangeWarning
-from lbm.faces import FreeSlip, Inlet, NoSlip, Outlet, Periodic
-from lbm.fixed_body import FixedBody
+from lbm.faces.records import FreeSlip, Inlet, NoSlip, Outlet, Periodic
 from lbm.flow import Flow
 from lbm.rates import Rates
 from lbm.scales import FlowScales, Scales

@@ -12,12 +12,15 @@ from pathlib import Path
 
 import numpy as np
 
-from lbm import arguments, bodies, checkpoint, fields
-from lbm.bodies import Body
+from lbm import arguments
+from lbm.bodies import body as bodies
+from lbm.bodies.body import Body
 from lbm.errors import InputError
-from lbm.faces import FACES, Face, Periodic, resolve
-from lbm.interrupt import interrupts_deferred
-from lbm.lattice import Lattice
+from lbm.faces.records import FACES, Face, Periodic, resolve
+from lbm.fluid import fields
+from lbm.fluid.lattice import Lattice
+from lbm.io import checkpoint
+from lbm.io.interrupt import interrupts_deferred
 from lbm.rates import Rates
 
 __all__ = ["Flow", "Force"]

@@ -13,6 +13,9 @@ import numpy as np
 from lbm import arguments
 from lbm.errors import DivergenceError, InputError
 from lbm.flow import Flow
+from lbm.fluid import fields
+from lbm.fluid.stencil import CS2
+from lbm.io.vtkhdf import write_image
 from lbm.scales import Scales
 
 __all__ = ["Average", "Checkpoint", "DivergenceGuard", "FieldOutput", "Observer", "Probe", "Sums", "checked"]

@@ -9,10 +9,14 @@ from collections.abc import Iterable
 import numba
 import numpy as np
 
-from lbm import arguments, cache, face_passes, kernels
-from lbm.faces import Face
+from lbm import arguments
+from lbm.faces import passes
+from lbm.faces.records import Face
 from lbm.flow import Flow, Force
-from lbm.interrupt import interrupts_deferred
+from lbm.fluid import cache, kernels
+from lbm.fluid.stencil import Q
+from lbm.io.interrupt import interrupts_deferred
+from lbm.io.progress import Progress
 from lbm.observers import DivergenceGuard, Observer, checked
 from lbm.rates import Rates
 
@@ -64,7 +68,7 @@ class Simulation(Flow):
     ):
         super().__init__(shape, rates, faces=faces, force=force, dtype=dtype)
         self.threads = arguments.threads(threads, math.prod(self.shape))
-        self._face_passes = face_passes.passes(self.faces, self.lattice.grid)
+        self._face_passes = passes.passes(self.faces, self.lattice.grid)
         self._scaled_rates = rates.scaled(self.dtype)
 
     def compile(self) -> float:

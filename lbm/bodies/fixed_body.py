@@ -1,7 +1,7 @@
 """A solid body inside the box: a sparse list of links that cross its surface, reflected after every step.
 
-Linear interpolation of :mod:`lbm.reflection`, second order for curved and inclined surfaces. With p the momentum
-that the body takes at a link, which meets its surface at r::
+Linear interpolation of :mod:`lbm.bodies.reflection`, second order for curved and inclined surfaces. With p the
+momentum that the body takes at a link, which meets its surface at r::
 
     F = sum p,      T = sum (r - r_0) x p
 
@@ -17,12 +17,12 @@ from numba import prange
 
 from lbm import arguments
 from lbm.bodies.body import Body
-from lbm.bodies.reflection import linear
+from lbm.bodies.reflection import LINEAR, Link, exchange_link
 from lbm.errors import InputError
-from lbm.fields import sent_density
-from lbm.lattice import PERIODIC, SLIP, Grid, Lattice
-from lbm.reflection import LINEAR, Link, exchange_link
-from lbm.stencil import C, Q
+from lbm.fluid.cache import kernel
+from lbm.fluid.fields import sent_density
+from lbm.fluid.lattice import PERIODIC, SLIP, Grid, Lattice
+from lbm.fluid.stencil import C, Q
 
 __all__ = ["FixedBody"]
 

@@ -29,9 +29,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lbm.cache import inlined
-from lbm.lattice import incoming, outgoing
-from lbm.stencil import OPPOSITE, C, W
+from lbm.fluid.cache import inlined
+from lbm.fluid.lattice import incoming, outgoing
+from lbm.fluid.stencil import OPPOSITE, C, W
 
 
 @inlined

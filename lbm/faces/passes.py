@@ -1,7 +1,7 @@
 """What walls that move, inlets and outlets do to the populations that come back from them, after every step.
 
-Which of them has a link through an edge of the box is in :mod:`lbm.returning`; what they do in
-:mod:`lbm.moving_wall` and :mod:`lbm.outlet`.
+Which of them has a link through an edge of the box is in :mod:`lbm.faces.returning`; what they do in
+:mod:`lbm.faces.moving_wall` and :mod:`lbm.faces.outlet`.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from __future__ import annotations
 import warnings
 
 from lbm.errors import OutsideRangeWarning
-from lbm.faces import Face, Inlet, NoSlip, Outlet
-from lbm.lattice import BOUNCE
-from lbm.moving_wall import WallPass
-from lbm.outlet import OutletPass
-from lbm.returning import Side
+from lbm.faces.moving_wall import WallPass
+from lbm.faces.outlet import OutletPass
+from lbm.faces.records import Face, Inlet, NoSlip, Outlet
+from lbm.faces.returning import Side
+from lbm.fluid.lattice import BOUNCE
 
 _RANK = {NoSlip: 2, Inlet: 1, Outlet: 0}
 

@@ -1,8 +1,8 @@
 """The six faces of the box: which boundary each one is.
 
 Periodic, free-slip and still no-slip faces cost nothing: they are in the map of :mod:`lbm.fluid.lattice`. What
-moving walls, inlets and outlets do after every step stands in :mod:`lbm.faces.passes`. All faces lie half a cell
-outside the outermost cell centres.
+moving walls, inlets and outlets do after every step stands in :mod:`lbm.faces.passes`. All faces lie half
+a cell outside the outermost cell centres.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from numba.extending import intrinsic
 
-from lbm.cache import inlined
+from lbm.fluid.cache import inlined
 
 
 @intrinsic

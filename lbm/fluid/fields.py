@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, prange
 
-from lbm.cache import inlined, kernel
-from lbm.lattice import Lattice, incoming, lend, outgoing, row_starts
-from lbm.memory import load_cell
-from lbm.stencil import C, Q, W
+from lbm.fluid.cache import inlined, kernel
+from lbm.fluid.lattice import Lattice, incoming, lend, outgoing, row_starts
+from lbm.fluid.memory import load_cell
+from lbm.fluid.stencil import C, Q, W
 
 __all__ = ["SUMS", "plane_sums", "read", "read_cell", "sent_density", "write"]
 

@@ -16,9 +16,8 @@ import numpy as np
 
 from lbm import arguments
 from lbm.arguments import shown
-from lbm.bodies import body as bodies
 from lbm.errors import InputError
-from lbm.files import write_aside
+from lbm.io.files import write_aside
 
 __all__ = ["FORMAT", "VERSION", "read", "save"]
 

@@ -72,7 +72,7 @@ class DryRebound:
     """Instantaneous rebound at the floor of the film: ``v_out = e_dry v_in``.
 
     The fluid around the sphere, ``added_mass``, is reversed with it. What that takes comes not from the sphere
-    but from the wall, as for any body that carries other mass along; see :mod:`lbm.spheres.wall_motion`.
+    but from the wall, as for any body that carries other mass along; see :mod:`lbm.spheres.spheres.wall_motion`.
     """
 
     e_dry: float

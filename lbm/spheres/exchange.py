@@ -1,6 +1,6 @@
 """Momentum exchange of spheres and fluid: the links through the surface are found cell by cell and reflected.
 
-Force and torque are the sums over the links of what :func:`lbm.reflection.exchange_link` gives.
+Force and torque are the sums over the links of what :func:`lbm.bodies.reflection.exchange_link` gives.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ import math
 import numpy as np
 from numba import njit, prange
 
-from lbm.cache import kernel
-from lbm.fields import sent_density
-from lbm.lattice import outgoing
-from lbm.reflection import Link, exchange_link
-from lbm.stencil import C, Q
-from lbm.surface import REACH, cut, inside, inside_any, surface_velocity, wrapped
+from lbm.bodies.reflection import Link, exchange_link
+from lbm.fluid.cache import kernel
+from lbm.fluid.fields import sent_density
+from lbm.fluid.lattice import outgoing
+from lbm.fluid.stencil import C, Q
+from lbm.spheres.surface import REACH, cut, inside, inside_any, surface_velocity, wrapped
 
 
 @kernel

@@ -13,11 +13,11 @@ import math
 import numpy as np
 from numba import njit
 
-from lbm.cache import kernel
-from lbm.equilibrium import equilibrium
-from lbm.lattice import incoming
-from lbm.stencil import C, Q
-from lbm.surface import inside, inside_any, surface_velocity, wrapped
+from lbm.fluid.cache import kernel
+from lbm.fluid.equilibrium import equilibrium
+from lbm.fluid.lattice import incoming
+from lbm.fluid.stencil import C, Q
+from lbm.spheres.surface import inside, inside_any, surface_velocity, wrapped
 
 
 @kernel(parallel=False)

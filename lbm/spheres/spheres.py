@@ -1,15 +1,15 @@
 """Spheres that move in the fluid: what happens to them after each step of the fluid.
 
 1. The fluid's populations are reflected at the surfaces, which gives force and torque
-  (:mod:`lbm.spheres.exchange`).
-2. Each sphere moves (Crank-Nicolson), near a wall in sub-steps (:mod:`lbm.spheres.wall_motion`)::
+  (:mod:`lbm.spheres.spheres.exchange`).
+2. Each sphere moves (Crank-Nicolson), near a wall in sub-steps (:mod:`lbm.spheres.spheres.wall_motion`)::
 
        v' = v + F/m,  x' = x + (v + v')/2,  (I + I_f) (omega' - omega) = T + I_f (omega - omega_before)
 
    F with gravity and buoyancy; the fluid's force is its momentum exchange over the very step. I_f is the moment
    of inertia of the displaced fluid: the last two terms cancel for all but changes from step to step, which in
    fluid of low viscosity would otherwise grow, the fluid having no pressure to pass on a torque at once.
-3. Cells that come free are filled (:mod:`lbm.spheres.refill`).
+3. Cells that come free are filled (:mod:`lbm.spheres.spheres.refill`).
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from lbm import arguments
-from lbm.bodies import Body
-from lbm.contact import Contact, Impact
+from lbm.bodies.body import Body
+from lbm.bodies.reflection import SCHEMES
 from lbm.errors import InputError
-from lbm.exchange import exchange
-from lbm.faces import FACES
-from lbm.film import Film
-from lbm.lattice import BOUNCE, PERIODIC, Lattice
-from lbm.refill import refill
-from lbm.reflection import SCHEMES
-from lbm.sampling import sampled
-from lbm.surface import REACH, Surfaces
-from lbm.wall_motion import FRACTION, motion_at_wall
+from lbm.faces.records import FACES
+from lbm.fluid.lattice import BOUNCE, PERIODIC, Lattice
+from lbm.spheres.contact import Contact, Impact
+from lbm.spheres.exchange import exchange
+from lbm.spheres.film import Film
+from lbm.spheres.refill import refill
+from lbm.spheres.sampling import sampled
+from lbm.spheres.surface import REACH, Surfaces
+from lbm.spheres.wall_motion import FRACTION, motion_at_wall
 
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
@@ -74,8 +74,8 @@ class Spheres(Body):
     drive : ``drive(step, gap)`` gives the velocity of all spheres at the end of that step, or None, which sets
         them free for good. Like all functions given here it depends on its arguments alone, for a checkpoint
         knows it by what it gives at some of them.
-    interpolation : a scheme of :mod:`lbm.bodies.reflection`.
-    fraction : size of the sub-steps near a wall; see :mod:`lbm.spheres.wall_motion`.
+    interpolation : a scheme of :mod:`lbm.bodies.body.reflection`.
+    fraction : size of the sub-steps near a wall; see :mod:`lbm.spheres.spheres.wall_motion`.
     """
 
     def __init__(
@@ -154,7 +154,7 @@ class Spheres(Body):
         walls = [f for f, kind in enumerate(grid.faces) if kind == BOUNCE]
         gaps = {f: _gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls}
         nearest = min(gaps.values(), default=math.inf)
-        given = None if self._free else self.drive(step + 1, nearest)
+        given = None if self._free or self.drive is None else self.drive(step + 1, nearest)
         v = self.velocities[s].copy()
         if given is not None:
             new = arguments.vector("drive", given)
@@ -231,8 +231,8 @@ class Spheres(Body):
         for motion, numbers in zip(self._at_walls.values(), state["at_walls"], strict=True):
             motion.remember(numbers)
         self.impacts = [
-            SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=FACES[int(row[4])])
-            for row in state["impacts"]
+            SphereImpact(float(step), float(speed_in), float(speed_out), int(sphere), FACES[int(face)])
+            for step, speed_in, speed_out, sphere, face in state["impacts"]
         ]
         self._free = bool(state["free"][0])
         self._tracks = [[tuple(float(x) for x in row) for row in track] for track in state["tracks"]]

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from lbm.cache import inlined
-from lbm.lattice import PERIODIC
-from lbm.stencil import C
+from lbm.fluid.cache import inlined
+from lbm.fluid.lattice import PERIODIC
+from lbm.fluid.stencil import C
 
 REACH = math.sqrt(2.0)
 """Length of the longest link: no fluid cell further than this from the surface has a link through it."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from lbm.cache import inlined
-from lbm.stencil import C, W
+from lbm.fluid.cache import inlined
+from lbm.fluid.stencil import C, W
 
 
 @inlined

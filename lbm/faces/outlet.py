@@ -1,7 +1,7 @@
 """Open faces: a density is set on them, the flow is carried outwards.
 
-In the map of :mod:`lbm.lattice` an outlet is a wall at rest. Then, by non-equilibrium extrapolation (Guo, Zheng &
-Shi, Chinese Phys. 11 (2002) 366), density rho_w on the face takes
+In the map of :mod:`lbm.fluid.lattice` an outlet is a wall at rest. Then, by non-equilibrium extrapolation (Guo,
+Zheng & Shi, Chinese Phys. 11 (2002) 366), density rho_w on the face takes
 
     ``f_k = f_k^eq((2 rho_w + rho)/3, u) + f_k - f_k^eq(rho, u)``
 
@@ -15,13 +15,13 @@ import numpy as np
 from numba import njit, prange
 
 from lbm import arguments
-from lbm.cache import kernel
-from lbm.equilibrium import equilibrium
-from lbm.faces import FACES, Outlet
-from lbm.fields import half
-from lbm.lattice import Lattice, incoming
-from lbm.returning import Side, face_cell, returns
-from lbm.stencil import C, Q
+from lbm.faces.records import FACES, Outlet
+from lbm.faces.returning import Side, face_cell, returns
+from lbm.fluid.cache import kernel
+from lbm.fluid.equilibrium import equilibrium
+from lbm.fluid.fields import half
+from lbm.fluid.lattice import Lattice, incoming
+from lbm.fluid.stencil import C, Q
 
 
 class OutletPass:

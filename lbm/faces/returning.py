@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from numba import njit
 
-from lbm.stencil import C
+from lbm.fluid.stencil import C
 
 
 class Side(NamedTuple):

@@ -1,7 +1,7 @@
 """Walls that move and inlets: momentum added to what comes back from a face.
 
-In the map of :mod:`lbm.lattice` both are walls at rest. Then, with the velocity u at the wall (Ladd, J. Fluid
-Mech. 271 (1994) 285),
+In the map of :mod:`lbm.fluid.lattice` both are walls at rest. Then, with the velocity u at the wall (Ladd, J.
+Fluid Mech. 271 (1994) 285),
 
     ``f_k += 6 w_k c_k . (rho u + <rho> (u_k - u))``
 
@@ -16,13 +16,13 @@ import numpy as np
 from numba import prange
 
 from lbm import arguments
-from lbm.cache import kernel
 from lbm.errors import InputError
-from lbm.faces import FACES, Face, FreeSlip, Inlet, NoSlip, Periodic
-from lbm.fields import sent_density
-from lbm.lattice import Lattice, incoming
-from lbm.returning import Side, face_cell, returns
-from lbm.stencil import C, Q, W
+from lbm.faces.records import FACES, Face, FreeSlip, Inlet, NoSlip, Periodic
+from lbm.faces.returning import Side, face_cell, returns
+from lbm.fluid.cache import kernel
+from lbm.fluid.fields import sent_density
+from lbm.fluid.lattice import Lattice, incoming
+from lbm.fluid.stencil import C, Q, W
 
 
 class WallPass:
