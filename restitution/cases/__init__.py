@@ -4,7 +4,7 @@ Read :mod:`~restitution.cases.case` (what may be said), :mod:`~restitution.cases
 :mod:`~restitution.cases.reading` (files, and those in ``shipped/``).
 """
 
-from restitution.cases.case import Case, ContactModel, FilmModel, Numerics, Release, Span
+from restitution.cases.case import Case, ContactModel, FilmModel, Numerics, Release, Span, Study
 from restitution.cases.reading import TEMPLATE, find, names, read_case
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Numerics",
     "Release",
     "Span",
+    "Study",
     "find",
     "names",
     "read_case",

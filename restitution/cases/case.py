@@ -114,14 +114,32 @@ class Span(Record):
     snapshot_interval: Positive | None = None
 
 
+class Study(Record):
+    """What a case is there to show; for the reports alone: it decides nothing of the run, and no base hands it on.
+
+    ``varies`` says in words what the case has otherwise than the case ``against``. Cases of the same words against
+    the same one are a group of the table of what the result depends on; groups stand by ``order``, those without
+    one last. ``series`` names the simulated series of Fig. 1 that its impacts join: its rebound is no input.
+    """
+
+    varies: str | None = None
+    against: str | None = None
+    order: Positive | None = None
+    series: str | None = None
+
+
 class Case(Record):
-    """A whole case. ``title`` and ``note`` are for readers; ``prediction`` says that no measured track exists."""
+    """A whole case.
+
+    ``title``, ``note`` and ``study`` are for readers; ``prediction`` says that no measured track exists.
+    """
 
     name: str
     title: str = ""
     note: str = ""
     record: str | None = None
     prediction: bool = False
+    study: Study | None = None
     fluid: Fluid
     sphere: Sphere
     wall: Wall | None = None

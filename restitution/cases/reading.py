@@ -2,7 +2,8 @@
 
 A file may name a ``base``, a shipped case or a file beside it, whose keys it then replaces one by one. A section
 that says anew of which kind it is (``form`` of a film, ``mode`` of a contact, ``kind`` of a release) replaces that
-of the base as a whole, its keys depending on it.
+of the base as a whole, its keys depending on it. What the base says to readers (``title``, ``note``, ``study``) is
+of the base alone.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ FOLDER = Path(__file__).parent / "shipped"
 TEMPLATE = Path(__file__).parent / "template.toml"
 """An example with every key explained."""
 _KIND = {"film": "form", "contact": "mode", "release": "kind"}
+_OWN = ("title", "note", "study")
 _DEEPEST = 5
 
 
@@ -57,6 +59,7 @@ def read_case(given: str | Path) -> Case:
     found = defects(case, str(path))
     if found:
         raise InputError(*found)
+    _check_study(case, path)
     return case
 
 
@@ -84,16 +87,32 @@ def _content(path: Path, depth: int = 0) -> dict[str, Any]:
     if not isinstance(base, str) or depth == _DEEPEST:
         rule = "must be the name of a case" if depth < _DEEPEST else f"more than {_DEEPEST} bases deep: a circle?"
         raise InputError(Defect(rule, file=str(path), field="base", value=str(base)))
-    beside = path.parent / f"{base.removesuffix('.toml')}.toml"
     try:
-        below = _content(beside if beside.is_file() else find(base), depth + 1)
+        below = _content(_named_in(path, base), depth + 1)
     except InputError as error:
         if error.defects[0].file != base:
             raise  # it is about what stands in the base
         raise InputError(Defect(error.defects[0].rule, file=str(path), field="base", value=base)) from None
-    for reader in ("title", "note"):
-        below.pop(reader, None)
+    for key in _OWN:
+        below.pop(key, None)
     return _over(below, content)
+
+
+def _named_in(path: Path, name: str) -> Path:
+    """The file of the case that the file ``path`` names: one beside it, or a shipped one."""
+    beside = path.parent / f"{name.removesuffix('.toml')}.toml"
+    return beside if beside.is_file() else find(name)
+
+
+def _check_study(case: Case, path: Path) -> None:
+    """Refuse a study against a case that is not there."""
+    if case.study is None or case.study.against is None:
+        return
+    try:
+        _named_in(path, case.study.against)
+    except InputError as error:
+        rule, against = error.defects[0].rule, case.study.against
+        raise InputError(Defect(rule, file=str(path), field="study.against", value=against)) from None
 
 
 def _over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:

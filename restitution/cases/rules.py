@@ -23,7 +23,16 @@ fifth low at 0.13."""
 
 def defects(case: Case, file: str) -> list[Defect]:
     """Everything wrong with a case whose single fields are valid."""
-    rules = (_fall, _release, _span, _film, _along, _contact, *((_resolution, _box) if case.numerics else ()))
+    rules = (
+        _fall,
+        _release,
+        _span,
+        _film,
+        _along,
+        _contact,
+        _study,
+        *((_resolution, _box) if case.numerics else ()),
+    )
     return [
         Defect(rule, file=file, field=field, value=None if value is None else f"{value}")
         for check in rules
@@ -122,6 +131,20 @@ def _contact(case: Case) -> Iterator[Finding]:
         yield "contact.duration_steps", None, f"is missing: the mode {c.mode!r} needs it"
     if effective and c.law is not None:
         yield from _law(c.law, c.parameters)
+
+
+def _study(case: Case) -> Iterator[Finding]:
+    study, contact = case.study, case.contact
+    if study is None:
+        return
+    for name, other in (("varies", "against"), ("against", "varies"), ("order", "varies")):
+        if getattr(study, name) is not None and getattr(study, other) is None:
+            yield f"study.{other}", None, f"is missing: study.{name} is given"
+    if study.against == case.name:
+        yield "study.against", case.name, "is the case itself"
+    if study.series is not None and (contact is None or contact.mode == "effective"):
+        rule = "is of rebounds that are predicted: give a [contact] whose mode is not 'effective'"
+        yield "study.series", study.series, rule
 
 
 def _law(name: str, parameters: dict[str, float]) -> Iterator[Finding]:

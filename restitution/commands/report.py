@@ -73,7 +73,8 @@ def run_fig2(args: argparse.Namespace) -> int:
 
     from restitution.errors import Defect, InputError
     from restitution.files import check_folder
-    from restitution.report.fig2 import content as fig2
+    from restitution.report.fig2 import report
+    from restitution.report.fig2.content import VERIFICATION
 
     for option in ("out", "runs"):  # before runs are made that take minutes
         if not getattr(args, option):
@@ -86,9 +87,9 @@ def run_fig2(args: argparse.Namespace) -> int:
         print(text, file=sys.stderr)  # noqa: T201
 
     checks = args.checks
-    if checks is None and Path(fig2.VERIFICATION).is_file():
-        checks = fig2.VERIFICATION
-    names, failed = fig2.write(args.out, args.runs, checks, args.full, args.fresh, say)
+    if checks is None and Path(VERIFICATION).is_file():
+        checks = VERIFICATION
+    names, failed = report.write(args.out, args.runs, checks, args.full, args.fresh, say)
     for name in names:
         show(str(Path(args.out) / name))
     for case, why in failed.items():

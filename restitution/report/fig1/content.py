@@ -30,16 +30,22 @@ if TYPE_CHECKING:
 SPEED = Speed.CONTACT
 SIMULATED_BY_ABSTRACT = "gondret2002_st152"
 """The record whose bounces the simulation of the source abstract used ("solid squares" of its Fig. 1)."""
-_CELLS = 10
-"""Cells a diameter of the simulated series, the same for all its points."""
 OTHERS = ("legendre_2005", "barnocky_davis_1988", "two_way_lubrication", "ehd_composite")
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """A kept run whose rebound is no input, and the series that its case says it is of."""
+
+    series: str
+    run: KeptRun
 
 
 @dataclass(frozen=True)
 class Fig1:
     """The tables behind the figure. ``every`` has the impacts under all three definitions of speed.
 
-    ``simulated`` names the kept runs of this package's solver whose impacts are among them.
+    ``simulated`` are the kept runs of this package's solver whose impacts are among them.
     """
 
     impacts: pd.DataFrame
@@ -49,7 +55,7 @@ class Fig1:
     notes: list[str]
     judgements: list[Judgement]
     trajectories: Trajectories
-    simulated: dict[str, KeptRun] = field(default_factory=dict)
+    simulated: dict[str, Predicted] = field(default_factory=dict)
 
     @property
     def measured(self) -> pd.DataFrame:
@@ -63,11 +69,12 @@ class Fig1:
 def gather(speed: Speed = SPEED, runs: str | Path | None = None) -> Fig1:
     """Impacts of all shipped trajectories that have any, and the scores of the laws against the measured ones.
 
-    ``runs`` is the folder of kept simulations: those that predict the rebound add a series that enters no score.
+    ``runs`` is the folder of kept simulations: those of a series add to the figure and enter no score.
     """
     simulated = {} if runs is None else predicted(Path(runs))
     every, scores, conditions, notes, judgements, trajectories = _everything()
-    rows = [row | _provenance_of_run(run) for run in simulated.values() for row in run.impacts.to_dict("records")]
+    own = [p.run for p in simulated.values()]
+    rows = [row | _provenance_of_run(run) for run in own for row in run.impacts.to_dict("records")]
     if rows:
         import pandas as pd
 
@@ -106,21 +113,19 @@ def _everything() -> tuple:
     return every, pd.concat(scores, ignore_index=True), conditions, notes, judgements, whole
 
 
-def predicted(folder: Path) -> dict[str, KeptRun]:
-    """Kept runs at ten cells in which no rebound is an input: dry restitution, nothing tuned."""
+def predicted(folder: Path) -> dict[str, Predicted]:
+    """Kept runs with impacts whose cases, shipped or a user's own, state a series (``[study]``)."""
     from restitution import cases
-    from restitution.runs.kept import read_run
+    from restitution.runs.kept import own_runs, read_run
 
-    runs = {}
-    for name in cases.names():
-        case = cases.read_case(name)
-        varied = name.endswith("_calibrated") or (name.startswith("gondret_st152") and name != "gondret_st152_10")
-        same_grid = case.numerics is not None and case.numerics.cells_per_diameter == _CELLS
-        if same_grid and case.contact is not None and case.contact.mode == "dry" and not varied:
-            run = read_run(case, folder)
-            if run is not None and len(run.impacts):
-                runs[name] = run
-    return runs
+    names, found = cases.names(), {}
+    for case in map(cases.read_case, names):
+        if case.study is not None and case.study.series is not None:
+            found[case.name] = case.study.series, read_run(case, folder)
+    for run in own_runs(folder, names):
+        if run.case.study is not None and run.case.study.series is not None:
+            found[run.case.name] = run.case.study.series, run
+    return {name: Predicted(series, run) for name, (series, run) in found.items() if run and len(run.impacts)}
 
 
 def _provenance(r: Resource) -> dict[str, object]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from restitution import datasets, laws
 from restitution.impacts.find import find_impacts
@@ -130,7 +130,7 @@ def _impacts(fig1: content.Fig1, speed: str) -> list[dict]:
     return sorted(rows, key=lambda r: (order[r["record"]], r["impact"]))
 
 
-def _e(row: object | None) -> str:
+def _e(row: Any | None) -> str:
     if row is None:
         return ""
     if row.outcome == "not_resolved":

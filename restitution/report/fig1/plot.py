@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,7 @@ from restitution.stokes import Speed, StokesNumber
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
     from restitution.conditions import Conditions
 
@@ -39,15 +41,15 @@ _FORMS = {
     "eq4_rational": r"$e/[1+K(1+e)/St]$",
     "eq4_linear": r"$e-K(1+e)/St$",
 }
-# label, marker, face; the edge is black
+# label, marker, face; the edge is black. By record, or by experiment for all of its records.
 SERIES = {
     "gondret2002_st152": ("Gondret et al. 2002, 3 mm (used in the simulation)", "s", "black"),
     "gondret2002_st27": ("Gondret et al. 2002, 6 mm (impact speed quoted)", "o", "white"),
-    "li2012": ("Li et al. 2012, five drops", "^", "white"),
-    "biegert2017": ("Biegert et al. 2017, simulation", "D", "#cccccc"),
-    "gondret_st": ("this package, simulation of 3 to 6 mm spheres in oil", "P", "#cccccc"),
-    "li_drop": ("this package, simulation of the drops", "X", "#cccccc"),
+    "Li et al. 2012": ("Li et al. 2012, five drops", "^", "white"),
+    "Biegert et al. 2017": ("Biegert et al. 2017, simulation", "D", "#cccccc"),
 }
+_FURTHER = (("P", "#cccccc"), ("X", "#cccccc"), ("*", "#cccccc"), ("v", "#cccccc"), ("p", "#cccccc"))
+"""Markers and faces of series that have none above: those of this package's runs, in turn."""
 
 
 def draw(fig1: Fig1, speed: Speed) -> Drawing:
@@ -79,9 +81,12 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
                 edgecolor="none", borderpad=0.1,
             )  # fmt: skip
         left.set_ylabel(r"effective restitution  $e_{\mathrm{eff}}/e_{\mathrm{dry}}$  [-]")
-        drawn = set(fig1.impacts.record.map(_series))
-        points = [_key(name) for name in SERIES if name in drawn]
-        figure.legend(handles=points, loc="outside lower center", ncols=2, fontsize=8.5)
+        figure.legend(
+            handles=[_key(*look) for look in looks(fig1).values()],
+            loc="outside lower center",
+            ncols=2,
+            fontsize=8.5,
+        )
         return save(figure)
 
 
@@ -126,16 +131,15 @@ def _lines(ax: Axes, names: tuple[str, ...], fig1: Fig1) -> None:
     St = np.geomspace(St_MIN, St_MAX, 600)
     conditions = _drawn_for(fig1)
     for name in names:
-        law = laws.get(name)
+        law = laws.get_rebound(name)
         label, colour, dashes = LINES[name]
         e = law(StokesNumber(St, "st", law.speed), E_DRY, conditions, out_of_range="ignore")
         ax.plot(St, e / E_DRY, color=colour, ls=dashes, label=label, zorder=2)
 
 
 def _points(ax: Axes, fig1: Fig1) -> None:
-    series = fig1.impacts.record.map(_series)
-    for name in SERIES:
-        _, marker, face = SERIES[name]
+    series = np.array(_series(fig1))
+    for name, (_, marker, face) in looks(fig1).items():
         rows = fig1.impacts[series == name]
         rebound, limit = rows[rows.outcome == "rebound"], rows[rows.e_eff_upper < rows.e_dry]
         ax.errorbar(
@@ -150,13 +154,26 @@ def _points(ax: Axes, fig1: Fig1) -> None:
         )  # fmt: skip
 
 
-def _series(record: str) -> str:
-    """The series a record is drawn in; a record without one is an error, not an omission."""
-    return next(name for name in SERIES if record.startswith(name))
+def _series(fig1: Fig1) -> list[str]:
+    """Of each impact the series it is drawn in: the one that its case states, or its record, or its experiment."""
+    own = {name: predicted.series for name, predicted in fig1.simulated.items()}
+    columns = zip(fig1.impacts.record, fig1.impacts.experiment, strict=True)
+    return [own.get(record, record if record in SERIES else experiment) for record, experiment in columns]
 
 
-def _key(name: str):
+def looks(fig1: Fig1) -> dict[str, tuple[str, str, str]]:
+    """Label, marker and face of every series that is drawn."""
+    own = {predicted.series for predicted in fig1.simulated.values()}
+    drawn = dict.fromkeys(_series(fig1))
+    found = {name: look for name, look in SERIES.items() if name in drawn}
+    further = [name for name in drawn if name not in SERIES]
+    for name, look in zip(further, cycle(_FURTHER)):
+        found[name] = f"this package, simulation of {name}" if name in own else name, *look
+    return found
+
+
+def _key(label: str, marker: str, face: str) -> Line2D:
+    """An entry of the legend."""
     from matplotlib.lines import Line2D
 
-    label, marker, face = SERIES[name]
     return Line2D([], [], ls="none", marker=marker, ms=6, mfc=face, mec="black", label=label)

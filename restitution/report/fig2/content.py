@@ -16,22 +16,24 @@ from restitution import datasets
 from restitution.cases import reading as case_files
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError, StoppedError
-from restitution.files import write_folder
 from restitution.impacts.bounces import Bounces, filmed
 from restitution.report.fig2.checks import Check, read_checks
-from restitution.report.fig2.point_lines import PointLine, draw_physics, lines, physics
-from restitution.report.fig2.scores import scores
+from restitution.report.fig2.point_lines import PointLine, lines, without_forces
+from restitution.report.fig2.scores import Score, scores
+from restitution.report.fig2.studies import Group, groups
 from restitution.runs.kept import KeptRun, ensure, own_runs, read_run
-from restitution.tables.writing import table_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
 RECORD = "gondret2002_st152"
+"""The record of the figure."""
 PUBLISHED = "biegert2017_st152"
-MAIN = "gondret_st152_10"
-SHORT = ("gondret_st152_10_measured", MAIN, "gondret_st152_10_soft")
-"""What the figure shows: contact modes (a), (b), (c) at ten cells a diameter."""
+"""The published simulation of it."""
+IMPOSED, MAIN, SOFT = "gondret_st152_10_measured", "gondret_st152_10", "gondret_st152_10_soft"
+"""Contact modes (a), (b), (c) at ten cells a diameter."""
+SHORT = (IMPOSED, MAIN, SOFT)
+"""What the figure shows, made where it is missing."""
 VERIFICATION = "benchmarks/sphere.json"
 """Where a checkout keeps the solver's verification; what is read is the caller's to say."""
 
@@ -41,14 +43,21 @@ class Fig2:
     """The kept runs by case, scores, the records as filmed, and the solver's verification."""
 
     runs: dict[str, KeptRun]
-    scores: pd.DataFrame
+    scores: dict[str, Score]
+    """By case, those of ``lines`` among them."""
     records: dict[str, Bounces]
     checks: list[Check]
+    forces_off: pd.DataFrame
+    """The point-particle model on the main record with each force off in turn."""
+    groups: list[Group] = field(default_factory=list)
+    """Cases of the main record that differ in one choice, kept or not."""
     failed: dict[str, str] = field(default_factory=dict)
     lines: list[PointLine] = field(default_factory=list)
     """The point-particle model on the main record."""
     own: list[str] = field(default_factory=list)
     """Runs of cases that are not shipped."""
+    missing: list[str] = field(default_factory=list)
+    """Shipped cases that have not been run."""
 
 
 def gather(
@@ -86,7 +95,10 @@ def gather(
             records[name] = filmed(datasets.load_track(name), resource.conditions, first)
     points = lines(RECORD)
     own = [name for name in found if name not in cases]
-    return Fig2(found, scores(found, records, points), records, checks, failed, points, own)
+    off = without_forces(RECORD)
+    missing = [name for name in cases if name not in found and name not in failed]
+    studies = groups(cases | {name: found[name].case for name in own}, RECORD)
+    return Fig2(found, scores(found, records, points), records, checks, off, studies, failed, points, own, missing)
 
 
 def _kept(cases: dict[str, Case], folder: Path, skip: Collection[str] = ()) -> dict[str, KeptRun]:
@@ -115,37 +127,3 @@ def _checks(given: str | Path | None) -> list[Check]:
     if not path.is_file():
         raise InputError(Defect("is no file", file=str(path)))
     return read_checks(path)
-
-
-def write(
-    folder: str | Path,
-    runs: str | Path,
-    verification: str | Path | None = None,
-    full: bool = False,
-    fresh: bool = False,
-    show: Callable[[str], None] | None = None,
-) -> tuple[list[str], dict[str, str]]:
-    """Write the report into ``folder``; returns the names of its files, and what runs failed and why."""
-    import pandas as pd
-
-    from restitution.report.fig2 import page, plot
-
-    fig2 = gather(runs, verification, full, fresh, show)
-    figure, others = plot.draw(fig2), plot.draw_records(fig2)
-    flow = plot.draw_flow(fig2)
-    off = physics(RECORD)
-    forces = draw_physics(off)
-    impacts = [run.impacts for run in fig2.runs.values() if len(run.impacts)]
-    files: dict[str, str | bytes] = {
-        "figure.svg": figure.svg,
-        "figure.png": figure.png,
-        "scores.csv": table_text(fig2.scores, "%.5g"),
-        "impacts.csv": table_text(pd.concat(impacts, ignore_index=True), "%.5g") if impacts else "",
-        "physics.csv": table_text(off, "%.5g"),
-        "physics.png": forces.png,
-        "index.html": page.render(fig2, figure, others, flow, off, forces),
-    }
-    files |= {"records.png": others.png} if others is not None else {}
-    files |= {"flow.png": flow.png} if flow is not None else {}
-    write_folder(folder, files)
-    return list(files), fig2.failed

@@ -7,52 +7,51 @@ from typing import TYPE_CHECKING
 
 from restitution import datasets
 from restitution.impacts.find import find_impacts
+from restitution.report.fig2.content import IMPOSED, MAIN, RECORD, SOFT, Fig2
+from restitution.report.fig2.scores import Score
 from restitution.report.page import number, percent
 from restitution.stokes import Speed
 
 if TYPE_CHECKING:
-    import pandas as pd
-
-    from restitution.report.fig2.content import Fig2
+    from restitution.cases.case import Case
+    from restitution.report.fig2.studies import Group
     from restitution.runs.kept import KeptRun
 
-GRIDS = ("gondret_st152_10", "gondret_st152_16", "gondret_st152_20")
-SMALL_GRIDS = tuple(f"{name}_small" for name in GRIDS)
 
-
-def in_words(fig2: Fig2, imposed: str, main: str, soft: str, record: str) -> list[str]:
+def in_words(fig2: Fig2) -> list[str]:
     """Findings on the main run, its restitution, its grid and its contact, as far as there are runs."""
-    table = fig2.scores.set_index("case")
-    if main not in fig2.runs:
+    if MAIN not in fig2.runs:
         return []
-    words = [_main(table.loc[main], fig2.runs[main]), _restitution(fig2.runs[main], record)]
-    words += [
-        w for w in (_grids(fig2, table, GRIDS, ""), _grids(fig2, table, SMALL_GRIDS, " in the smaller box")) if w
-    ]
-    if soft in table.index:
-        change = table.loc[soft, "apex_1_m"] / table.loc[main, "apex_1_m"] - 1
+    words = [_main(fig2.scores[MAIN]), _restitution(fig2.runs[MAIN])]
+    words += [w for group in fig2.groups if (w := _grids(fig2, group))]
+    if SOFT in fig2.runs:
+        change = _first_apex(fig2.scores[SOFT]) / _first_apex(fig2.scores[MAIN]) - 1
         words.append(
             "A contact stretched over the time that sound needs to pass two diameters, which takes no added mass "
             f"from outside, changes the first apex by {percent(change)}."
         )
-    if imposed in fig2.runs:
-        words.append(_imposed(table.loc[imposed], fig2.runs[imposed]))
+    if IMPOSED in fig2.runs:
+        words.append(_imposed(fig2.scores[IMPOSED], fig2.runs[IMPOSED]))
     return words
 
 
-def _main(row: pd.Series, run: KeptRun) -> str:
-    apexes = " and ".join(percent(row[f"apex_{k}_error"]) for k in (1, 2))
-    intervals = " and ".join(percent(row[f"interval_{k}_error"]) for k in (1, 2))
-    cells = run.case.numerics.cells_per_diameter
+def _first_apex(score: Score) -> float:
+    return score.bounces.apexes_m[0]
+
+
+def _main(score: Score) -> str:
+    apexes = " and ".join(percent(error) for error in score.bounces.apex_errors[:2])
+    intervals = " and ".join(percent(error) for error in score.bounces.interval_errors[:2])
     return (
-        f"With nothing tuned, at {cells:g} cells per diameter, the first two apexes are off by {apexes}, "
-        f"the times between contacts by {intervals}; the rms distance is {number(row['rms_gap_d'], 3)} d."
+        f"With nothing tuned, at {score.grid.cells_per_diameter:g} cells per diameter, the first two apexes are "
+        f"off by {apexes}, the times between contacts by {intervals}; the rms distance is "
+        f"{number(score.rms_gap_d, 3)} d."
     )
 
 
-def _restitution(run: KeptRun, record: str) -> str:
+def _restitution(run: KeptRun) -> str:
     """e_eff far, bounce by bounce, beside the measured one and its error."""
-    rows = find_impacts(datasets.load_track(record), datasets.resource(record).conditions, Speed.FAR).rows
+    rows = find_impacts(datasets.load_track(RECORD), datasets.resource(RECORD).conditions, Speed.FAR).rows
     own = run.impacts[run.impacts.speed_definition == str(Speed.FAR)].set_index("impact").e_eff
     measured = {r["impact"]: (r["e_eff"], r["e_eff_sigma"]) for r in rows if "e_eff" in r}
     pairs = [(own[k], *found) for k, found in measured.items() if math.isfinite(own.get(k, math.nan))]
@@ -64,33 +63,43 @@ def _restitution(run: KeptRun, record: str) -> str:
     )
 
 
-def _imposed(row: pd.Series, run: KeptRun) -> str:
+def _imposed(score: Score, run: KeptRun) -> str:
     """What becomes of an e_eff that is imposed at the wall."""
     far = run.impacts[run.impacts.speed_definition == str(Speed.FAR)].e_eff.dropna()
     given = [c.speed_out_m_s / c.speed_in_m_s for c in run.about.contacts[: len(far)] if c.speed_in_m_s > 0]
     pairs = "; ".join(f"{a:.3f} becomes {b:.3f}" for a, b in zip(given, far, strict=False))
     return (
         f"With contact (a) e_eff is imposed at the wall; evaluated as the record is, {pairs}, and the first apex "
-        f"is off by {percent(row['apex_1_error'])}: the drag of the fluid set in motion, strongest at once after "
-        "the reversal, is in the measured e_eff already and acts once more in the run."
+        f"is off by {percent(score.bounces.apex_errors[0])}: the drag of the fluid set in motion, strongest at "
+        "once after the reversal, is in the measured e_eff already and acts once more in the run."
     )
 
 
-def _grids(fig2: Fig2, table: pd.DataFrame, names: tuple[str, ...], where: str) -> str | None:
-    """How far the apexes of several grids and lattice speeds are apart, with the same closures."""
-    known = [name for name in names if name in table.index and not math.isnan(table.loc[name, "apex_1_m"])]
+def _grids(fig2: Fig2, group: Group) -> str | None:
+    """How far the apexes of several grids and lattice speeds are apart, with the closures of the main run."""
+    main, first = fig2.runs[MAIN].case, group.against
+    if not group.of_grids or (first.contact, first.film) != (main.contact, main.film):
+        return None
+    known = [n for n in group.names if n in fig2.runs and not math.isnan(_first_apex(fig2.scores[n]))]
     if len(known) < 2:
         return None
-    rows = table.loc[known]
-    cells, speeds = (", ".join(f"{v:g}" for v in rows[c]) for c in ("cells_per_diameter", "lattice_speed"))
+    scores = [fig2.scores[name] for name in known]
+    cells = ", ".join(f"{s.grid.cells_per_diameter:g}" for s in scores)
+    speeds = ", ".join(f"{s.grid.lattice_speed:g}" for s in scores)
     shown = []
-    for k, which in ((1, "first"), (2, "second")):
-        apexes = rows[f"apex_{k}_m"].dropna()
-        values = ", ".join(number(a * 1e3, 2) for a in apexes)
-        shown.append(f"{which} apex {values} mm, {100 * (apexes.max() / apexes.min() - 1):.1f} % between them")
+    for k, which in enumerate(("first", "second")):
+        apexes = [apex for s in scores if not math.isnan(apex := s.bounces.apexes_m[k])]
+        values = ", ".join(number(apex * 1e3, 2) for apex in apexes)
+        shown.append(f"{which} apex {values} mm, {100 * (max(apexes) / min(apexes) - 1):.1f} % between them")
     stale = ", ".join(name for name in known if fig2.runs[name].stale)
+    where = "" if first.name == MAIN else " in the smaller box" if _smaller(first, main) else f" of {first.name}"
     return (
         f"With {cells} cells per diameter and lattice speeds of {speeds}{where}: {'; '.join(shown)}; "
-        f"the last is {percent(rows['apex_1_error'].iloc[-1])} from the record's first apex."
+        f"the last is {percent(scores[-1].bounces.apex_errors[0])} from the record's first apex."
         + (f" Made with another version of code or case: {stale}." if stale else "")
     )
+
+
+def _smaller(case: Case, main: Case) -> bool:
+    """Whether a case has a smaller box than the main one."""
+    return all(getattr(case.numerics, side) < getattr(main.numerics, side) for side in ("width_d", "height_d"))

@@ -10,24 +10,21 @@ import numpy as np
 from restitution import datasets
 from restitution.impacts.bounces import frame_velocity
 from restitution.report.drawing import Drawing, save, style
+from restitution.report.fig2.content import IMPOSED, MAIN, PUBLISHED, RECORD, SOFT, Fig2
 from restitution.report.fig2.point_lines import DRY, FITTED, RATIONAL
 from restitution.runs.flow_pictures import MOMENTS
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
 
-    from restitution.report.fig2.content import Fig2
     from restitution.runs.kept import KeptRun
 
 # label, colour, dashes: told apart by the dashes alone
 LINES = {
-    "gondret_st152_10_measured": (
-        "simulation, contact (a): measured $e_{eff}$ each bounce",
-        "#D55E00",
-        (0, (6, 2)),
-    ),
-    "gondret_st152_10": ("simulation, contact (b): $e_{dry}$, film resolved", "#000000", "-"),
-    "gondret_st152_10_soft": ("simulation, contact (c): soft, stretched", "#0072B2", (0, (1, 1.2))),
+    IMPOSED: ("simulation, contact (a): measured $e_{eff}$ each bounce", "#D55E00", (0, (6, 2))),
+    MAIN: ("simulation, contact (b): $e_{dry}$, film resolved", "#000000", "-"),
+    SOFT: ("simulation, contact (c): soft, stretched", "#0072B2", (0, (1, 1.2))),
 }
 POINTS = {
     DRY: ("point particle: $e_{dry}$, cavitating film", "#009E73", (0, (1, 3))),
@@ -51,10 +48,8 @@ def draw(fig2: Fig2) -> Drawing:
     """Velocity and gap against time from the first contact."""
     from matplotlib.figure import Figure
 
-    from restitution.report.fig2 import content
-
-    record, published = fig2.records[content.RECORD], fig2.records[content.PUBLISHED]
-    conditions = datasets.resource(content.RECORD).conditions
+    record, published = fig2.records[RECORD], fig2.records[PUBLISHED]
+    conditions = datasets.resource(RECORD).conditions
     d, star = conditions.sphere.diameter, math.sqrt(conditions.gravity / conditions.sphere.diameter)
     with style():
         figure = Figure(figsize=(11.0, 8.6), layout="constrained")
@@ -85,7 +80,7 @@ def draw(fig2: Fig2) -> Drawing:
                 zorder=1,
                 **PUBLISHED_LINE,
             )
-        track = datasets.load_track(content.RECORD)
+        track = datasets.load_track(RECORD)
         time, velocity, error = frame_velocity(track, record.contacts_s)
         first = record.contacts_s[0]
         top.errorbar(
@@ -108,8 +103,6 @@ def draw(fig2: Fig2) -> Drawing:
 
 def _published(fig2: Fig2, contacts_s: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Velocity, by differences of its points, and gap of the published simulation, from its own zero of time."""
-    from restitution.report.fig2.content import PUBLISHED
-
     track = datasets.load_track(PUBLISHED)
     time, velocity, _ = frame_velocity(track, contacts_s)
     breaks = np.searchsorted(time, contacts_s)
@@ -122,8 +115,6 @@ def _published(fig2: Fig2, contacts_s: np.ndarray) -> list[tuple[np.ndarray, np.
 def draw_records(fig2: Fig2) -> Drawing | None:
     """Gap in time for every other record of which a run is kept; None where there is none."""
     from matplotlib.figure import Figure
-
-    from restitution.report.fig2.content import RECORD
 
     runs = [r for r in fig2.runs.values() if r.case.record not in (None, RECORD) and not r.case.prediction]
     by_record: dict[str, list[KeptRun]] = {}
@@ -174,8 +165,6 @@ def draw_flow(fig2: Fig2) -> Drawing | None:
     from matplotlib.figure import Figure
     from matplotlib.patches import Circle
 
-    from restitution.report.fig2.content import MAIN
-
     run = fig2.runs.get(MAIN)
     frames = run.flow.frames if run is not None else {}
     if not frames:
@@ -189,9 +178,10 @@ def draw_flow(fig2: Fig2) -> Drawing | None:
                 ax.set_axis_off()
                 continue
             f = frames[moment]
-            drawn = ax.pcolormesh(
-                f.x_d, f.z_d, f.vorticity.T * scale, cmap="RdBu_r", vmin=-5, vmax=5, shading="gouraud"
-            )
+            drawn = ax.pcolormesh(  # in the SVG an image: as triangles it is megabytes
+                f.x_d, f.z_d, f.vorticity.T * scale, cmap="RdBu_r", vmin=-5, vmax=5, shading="gouraud",
+                rasterized=True,
+            )  # fmt: skip
             ax.contour(  # told apart without colour by the dashes, matplotlib's for negative levels
                 f.x_d, f.z_d, f.vorticity.T * scale, levels=(-4, -2, -1, 1, 2, 4), colors="black", linewidths=0.5
             )
@@ -203,4 +193,27 @@ def draw_flow(fig2: Fig2) -> Drawing | None:
             ax.set_title(f"{moment} the impact: $t$ = {f.time_s * 1e3:.1f} ms, $h/d$ = {f.gap_d:.2f}", fontsize=10)
         axes[0].set_ylabel("height  $z/d$  [-]")
         figure.colorbar(drawn, ax=axes, label=r"vorticity  $\omega_y d/u_{in}$  [-]", shrink=0.8, extend="both")
+        return save(figure)
+
+
+def draw_forces(table: pd.DataFrame) -> Drawing:
+    """What each force does to the first apex, and to the distance from the frames."""
+    from matplotlib.figure import Figure
+
+    whole, rows = table.iloc[0], table.iloc[1:].sort_values("apex_1_change", key=abs)
+    with style():
+        figure = Figure(figsize=(9.0, 3.4), layout="constrained")
+        left, right = figure.subplots(1, 2, sharey=True)
+        y = np.arange(len(rows))
+        left.barh(y, 100 * rows.apex_1_change, color="#999999", edgecolor="black", lw=0.8)
+        left.axvline(0, color="black", lw=0.8)
+        left.set_yticks(y, rows.off)
+        left.set_ylabel("without")
+        left.set_xlabel("change of the first apex  [%]")
+        right.plot(rows.rms_d, y, "o", color="black", ms=5)
+        right.axvline(whole.rms_d, color="black", ls="--", lw=1.0, label="whole model")
+        right.set_xscale("log")
+        right.set_xlabel("rms distance from the frames  [$d$]")
+        right.grid(axis="y", color="#dddddd", lw=0.8)
+        right.legend(fontsize=8, loc="lower right")
         return save(figure)

@@ -19,7 +19,6 @@ from restitution.bounce.agreement import release_of
 from restitution.bounce.sensitivity import forces_off
 from restitution.conditions import Conditions
 from restitution.impacts.find import find_impacts
-from restitution.report.drawing import Drawing, save, style
 from restitution.stokes import Speed
 from restitution.tracks import Track
 
@@ -135,31 +134,8 @@ def fitted_K() -> tuple[float, float, float]:
     return K, low, high
 
 
-def physics(record: str) -> pd.DataFrame:
+def without_forces(record: str) -> pd.DataFrame:
     """Each force of the model with film, cavitation and wake off in turn (:func:`forces_off`)."""
     conditions, track = datasets.resource(record).conditions, datasets.load_track(record)
     end = float(np.ptp(track.time_s)) + _AFTER_S
     return forces_off(conditions, release_of(track, conditions), closures()[DRY_WAKE][1], end, track)
-
-
-def draw_physics(table: pd.DataFrame) -> Drawing:
-    """What each force does to the first apex, and to the distance from the frames."""
-    from matplotlib.figure import Figure
-
-    whole, rows = table.iloc[0], table.iloc[1:].sort_values("apex_1_change", key=abs)
-    with style():
-        figure = Figure(figsize=(9.0, 3.4), layout="constrained")
-        left, right = figure.subplots(1, 2, sharey=True)
-        y = np.arange(len(rows))
-        left.barh(y, 100 * rows.apex_1_change, color="#999999", edgecolor="black", lw=0.8)
-        left.axvline(0, color="black", lw=0.8)
-        left.set_yticks(y, rows.off)
-        left.set_ylabel("without")
-        left.set_xlabel("change of the first apex  [%]")
-        right.plot(rows.rms_d, y, "o", color="black", ms=5)
-        right.axvline(whole.rms_d, color="black", ls="--", lw=1.0, label="whole model")
-        right.set_xscale("log")
-        right.set_xlabel("rms distance from the frames  [$d$]")
-        right.grid(axis="y", color="#dddddd", lw=0.8)
-        right.legend(fontsize=8, loc="lower right")
-        return save(figure)

@@ -10,25 +10,24 @@ from restitution.report.page import percent
 from restitution.runs.validity import physics
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from restitution.report.fig2.checks import Check
     from restitution.report.fig2.content import Fig2
     from restitution.runs.kept import KeptRun
 
 
-def settling(fig2: Fig2, table: pd.DataFrame) -> list[dict]:
+def settling(fig2: Fig2) -> list[dict]:
+    """Peak speed over terminal speed of each release without contact, and the distance from its track."""
     rows = []
     for name, run in fig2.runs.items():
-        row = table.loc[name]
-        if run.case.contact is not None or math.isnan(row["peak_over_terminal"]):
+        settled = fig2.scores[name].settled
+        if run.case.contact is not None or math.isnan(settled.peak_over_terminal):
             continue
         rows.append(
             {
                 "name": name,
-                "peak": f"{row['peak_over_terminal']:.4f}",
-                "error": percent(row["peak_over_terminal_error"], ".2f"),
-                "rms": "" if math.isnan(row["rms_over_drop"]) else f"{row['rms_over_drop'] * 100:.2f} %",
+                "peak": f"{settled.peak_over_terminal:.4f}",
+                "error": percent(settled.peak_over_terminal_error, ".2f"),
+                "rms": "" if math.isnan(settled.rms_over_drop) else f"{settled.rms_over_drop * 100:.2f} %",
                 "made": run.made_with,
                 "stale": run.stale,
             }
@@ -37,6 +36,7 @@ def settling(fig2: Fig2, table: pd.DataFrame) -> list[dict]:
 
 
 def numerics(run: KeptRun) -> dict:
+    """Grid, box, step and method of a run."""
     n, film, about = run.case.numerics, run.case.film, run.about
     return {
         "name": run.case.name,
@@ -69,6 +69,7 @@ def older(checks: list[Check]) -> str:
 
 
 def check(c: Check) -> dict:
+    """A figure of the verification beside its reference."""
     # Against 0 the error is the figure itself, which stands there already.
     return {
         "name": c.name,

@@ -10,7 +10,7 @@ from restitution.runs.filmed import filmed
 from restitution.runs.validity.program import program_hash
 from restitution.runs.validity.told import told
 
-_FOR_READERS = {"title", "note", "prediction"}
+_FOR_READERS = {"title", "note", "prediction", "study"}
 _DIGITS = 12
 
 

@@ -5,11 +5,13 @@ import re
 import pytest
 
 from restitution import cases, datasets
-from restitution.cases import ContactModel, FilmModel, Numerics, Release, Span
+from restitution.cases import ContactModel, FilmModel, Numerics, Release, Span, Study
 from restitution.cases.rules import rebound_height_d
 from restitution.cli import main
 from restitution.conditions import Fluid, Sphere, Wall
 from restitution.errors import InputError
+from restitution.runs.validity.key import checkpoint_key
+from restitution.runs.validity.told import told
 
 GOOD = """
 [fluid]
@@ -177,7 +179,7 @@ def test_the_example_can_be_run_and_has_every_key(tmp_path):
     assert main(["simulate", "--template", str(tmp_path / "mine.toml")]) == 0
     text = (tmp_path / "mine.toml").read_text()
     cases.read_case(tmp_path / "mine.toml")
-    for model in (Fluid, Sphere, Wall, Release, Numerics, FilmModel, ContactModel, Span):
+    for model in (Fluid, Sphere, Wall, Release, Numerics, FilmModel, ContactModel, Span, Study):
         for name in model.model_fields:
             assert re.search(rf"^(# )?{name} = ", text, re.MULTILINE), f"{model.__name__}.{name}"
 
@@ -193,3 +195,42 @@ def test_a_base_that_is_not_there_is_named_with_file_and_field(tmp_path, capsys)
     (tmp_path / "mine.toml").write_text('base = "nowhere"\n')
     assert main(["simulate", str(tmp_path / "mine.toml")]) == 2
     assert f"{tmp_path / 'mine.toml'}: base = 'nowhere'" in capsys.readouterr().err
+
+
+STUDY = '[study]\nvaries = "width of the box"\nagainst = "gondret_st152_10"\norder = 8\n'
+
+
+def test_a_study_is_for_readers_alone(tmp_path):
+    """What the solver is told and what a checkpoint belongs to do not change; nobody inherits it."""
+    (tmp_path / "plain.toml").write_text(GOOD)
+    plain = cases.read_case(tmp_path / "plain.toml")
+    studied = read(tmp_path, GOOD + STUDY).model_copy(update={"name": "plain"})
+    assert studied.study.varies == "width of the box"
+    assert told(studied) == told(plain)
+    assert checkpoint_key(studied) == checkpoint_key(plain)
+    (tmp_path / "heir.toml").write_text('base = "case"\n')
+    assert cases.read_case(tmp_path / "heir.toml").study is None
+
+
+@pytest.mark.parametrize(
+    ("study", "field"),
+    [
+        (STUDY.replace("gondret_st152_10", "gondret_152"), "study.against"),
+        (STUDY.replace("gondret_st152_10", "case"), "study.against"),
+        ('[study]\nvaries = "width"\n', "study.against"),
+        ('[study]\nagainst = "gondret_st152_10"\n', "study.varies"),
+        ("[study]\norder = 1\n", "study.varies"),
+        (STUDY + "color = 1\n", "study.color"),
+    ],
+)
+def test_a_study_that_says_half_is_refused(tmp_path, study, field):
+    with pytest.raises(InputError) as raised:
+        read(tmp_path, GOOD + study)
+    assert [d.field for d in raised.value.defects] == [field]
+
+
+def test_a_rebound_that_is_put_in_joins_no_series_of_predicted_ones(tmp_path):
+    text = GOOD.replace('"dry"', '"effective"\nlaw = "legendre_2005"').replace('"source_abstract_eq3"', '"none"')
+    read(tmp_path, text)
+    with pytest.raises(InputError, match=r"study\.series"):
+        read(tmp_path, text + '[study]\nseries = "drops"\n')

@@ -12,22 +12,29 @@ from restitution import cases, datasets
 from restitution.cli import main
 from restitution.commands.simulate import show_result
 from restitution.report.fig1 import content as fig1
+from restitution.report.fig1 import plot as fig1_plot
 from restitution.report.fig2 import content as fig2
 from restitution.report.fig2 import point_lines
+from restitution.report.fig2 import report as fig2_report
+from restitution.report.fig2.findings import in_words
+from restitution.report.fig2.sensitivity import sensitivity
+from restitution.report.fig2.studies import groups
+from restitution.report.page import percent
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.flow_pictures import FlowFrames, Frame
 from restitution.runs.validity import physics
 from restitution.runs.validity.program import program_hash
-from restitution.runs.validity.told import told
+from restitution.runs.validity.told import departures, told
+from restitution.stokes import Speed
 from restitution.tables.writing import table_text
 
 FALL = 8.146
 """Free fall of the 3 mm sphere in oil, m/s2: 9.81 (7800 - 935)/(7800 + 935/2)."""
 
 
-def keep(folder, name, e, current=True):
+def keep(folder, name, e, current=True, case=None):
     """A ballistic trajectory in the place of a run: rebounds by ``e`` from 0.585 m/s, without drag."""
-    case = cases.read_case(name)
+    case = cases.read_case(name) if case is None else case
     speeds = [0.585 * e**k for k in range(1, 5)]
     starts = np.cumsum([0.0, *(2 * v / FALL for v in speeds)])
     time = np.arange(-0.02, starts[-1], 2e-4)
@@ -70,7 +77,7 @@ def report(tmp_path_factory):
     keep(folder / "runs", "gondret_st152_16", 0.76, current=False)
     checks = [{"name": "drag", "measured": 1.01, "reference": 1.0, "error": 0.01, "source": "Somebody 1982"}]
     (folder / "sphere.json").write_text(json.dumps(checks))
-    files, failed = fig2.write(folder / "out", folder / "runs", folder / "sphere.json")
+    files, failed = fig2_report.write(folder / "out", folder / "runs", folder / "sphere.json")
     assert not failed
     assert {p.name for p in (folder / "out").iterdir()} == set(files)
     return folder
@@ -132,7 +139,7 @@ def test_the_record_says_that_history_matters(report):
 
 
 def test_second_report_gives_the_same_bytes(report, tmp_path):
-    fig2.write(tmp_path, report / "runs", report / "sphere.json")
+    fig2_report.write(tmp_path, report / "runs", report / "sphere.json")
     for path in (report / "out").iterdir():
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
 
@@ -142,7 +149,7 @@ def test_page_without_verification_says_so(report, tmp_path, monkeypatch):
     place = tmp_path / fig2.VERIFICATION  # which a function does not read because it stands where one stands
     place.parent.mkdir()
     shutil.copy(report / "sphere.json", place)
-    fig2.write(tmp_path, report / "runs")
+    fig2_report.write(tmp_path, report / "runs")
     assert "No figures are kept" in (tmp_path / "index.html").read_text()
 
 
@@ -199,7 +206,7 @@ def test_a_table_that_was_cut_is_refused(runs, tmp_path, capsys):
     about = json.loads((place / "run.json").read_text())
     about |= {"steps": len(table) - 2, "step_s": 2e-4}
     (place / "run.json").write_text(json.dumps(about))
-    assert fig2.gather(runs).scores is not None
+    assert set(fig2.SHORT) <= fig2.gather(runs).scores.keys()
     (place / "trajectory.csv").write_text("\n".join(table[: len(table) // 2]) + "\n")
     assert any("trajectory.csv" in line and "ends before" in line for line in refused(runs, tmp_path, capsys))
 
@@ -217,7 +224,37 @@ def test_a_run_of_ones_own_case_is_scored(runs, tmp_path):
     shutil.copytree(runs / "gondret_st152_10", runs / "mine")
     found = fig2.gather(runs)
     assert found.own == ["mine"]
-    scores = found.scores.set_index("case")
-    assert scores.apex_1_m["mine"] == scores.apex_1_m["gondret_st152_10"]
-    fig2.write(tmp_path / "out", runs)
+    assert found.scores["mine"].bounces == found.scores["gondret_st152_10"].bounces
+    fig2_report.write(tmp_path / "out", runs)
     assert "mine" in (tmp_path / "out" / "index.html").read_text()
+
+
+def test_a_case_of_ones_own_joins_what_its_study_names(runs, tmp_path):
+    """A group with its reference, a finer grid among the findings, and a series of Fig. 1: all from one file."""
+    (tmp_path / "mine.toml").write_text(
+        'base = "gondret_st152_10"\n[numerics]\ncells_per_diameter = 12\nwidth_d = 7\nheight_d = 19\n'
+        '[study]\nvaries = "cells, my box"\nagainst = "gondret_st152_10_small"\nseries = "my spheres"\n'
+    )
+    mine = cases.read_case(tmp_path / "mine.toml")
+    keep(runs, "mine", 0.74, case=mine)
+    keep(runs, "gondret_st152_10_small", 0.75)
+    found = fig2.gather(runs)
+    group = found.groups[-1]  # no order is stated
+    assert (group.varies, group.names) == ("cells, my box", ("gondret_st152_10_small", "mine"))
+    rows = {row["name"]: row for row in sensitivity(found) if row["what"] == "cells, my box"}
+    assert rows["mine"]["changes"][0] == percent((0.74 / 0.75) ** 2 - 1)
+    assert any("10, 12 cells per diameter" in words for words in in_words(found))
+    joined = fig1.gather(runs=runs)
+    assert joined.simulated["mine"].series == "my spheres"
+    assert "this package, simulation of my spheres" in [look[0] for look in fig1_plot.looks(joined).values()]
+    fig1_plot.draw(joined, Speed.CONTACT)
+
+
+def test_groups_of_shipped_cases_differ_in_what_reaches_the_solver():
+    """No case is in a group twice, and each is told something else than the one it stands against."""
+    shipped = {name: cases.read_case(name) for name in cases.names()}
+    found = groups(shipped, fig2.RECORD)
+    assert len(found) == len({group.varies for group in found})
+    for group in found:
+        for case in group.cases[1:]:
+            assert departures(told(group.against), told(case)), case.name
