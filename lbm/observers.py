@@ -22,7 +22,10 @@ __all__ = ["Average", "Checkpoint", "DivergenceGuard", "FieldOutput", "Observer"
 
 
 class Observer(Protocol):
-    """Called with the flow whenever its count of steps is a multiple of ``every``."""
+    """Called with the flow whenever its count of steps is a multiple of ``every``, and at the start of a flow.
+
+    It may look, not change: a run, ``set_flow`` and ``restore`` from within are refused.
+    """
 
     every: int
 
@@ -50,7 +53,14 @@ _STABLE = 0.51
 
 @dataclass(frozen=True)
 class DivergenceGuard:
-    """Stops a run whose density or speed leaves ``density`` or ``top_speed`` (lattice units), or is NaN."""
+    """Stops a run whose density or speed goes out of range or is NaN.
+
+    Parameters
+    ----------
+    every : steps from one check to the next.
+    density : lowest and highest allowed, over the rest density.
+    top_speed : highest allowed, in cells a step.
+    """
 
     every: int = 100
     density: tuple[float, float] = (0.5, 2.0)
@@ -92,8 +102,18 @@ class DivergenceGuard:
 
 @dataclass
 class Sums:
-    """Total mass, momentum and kinetic energy against time: ``steps``, ``rows`` (mass, px, py, pz, energy).
+    """Total mass, momentum and kinetic energy against time, in lattice units.
 
+    Parameters
+    ----------
+    every : steps from one row to the next.
+
+    Attributes
+    ----------
+    steps, rows : when, and mass, px, py, pz, energy then.
+
+    Notes
+    -----
     Mass is counted as excess over the fluid at rest, which keeps its round-off small.
     """
 
@@ -113,7 +133,17 @@ class Sums:
 
 @dataclass
 class Probe:
-    """Density and velocity at one ``cell`` against time: ``steps`` and ``rows`` (rho, ux, uy, uz)."""
+    """Density and velocity at one cell against time.
+
+    Parameters
+    ----------
+    every : steps from one row to the next.
+    cell : (i, j, k), from 0.
+
+    Attributes
+    ----------
+    steps, rows : when, and rho, ux, uy, uz then.
+    """
 
     every: int
     cell: tuple[int, int, int]
@@ -137,7 +167,17 @@ class Probe:
 
 @dataclass
 class Average:
-    """Mean of density and velocity over the calls: ``density`` and ``velocity``."""
+    """Mean of density and velocity over the calls.
+
+    Parameters
+    ----------
+    every : steps from one call to the next.
+
+    Attributes
+    ----------
+    count : calls so far.
+    density, velocity : (nx, ny, nz) and (3, nx, ny, nz), None before the first call.
+    """
 
     every: int
     count: int = 0
@@ -160,8 +200,20 @@ class Average:
 
 @dataclass
 class FieldOutput:
-    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView, in SI if ``scales`` are given.
+    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView.
 
+    Parameters
+    ----------
+    every : steps from one file to the next.
+    directory, stem : where, and the beginning of the files' names.
+    scales : to write in SI; None for lattice units.
+
+    Attributes
+    ----------
+    written : paths of the files so far.
+
+    Notes
+    -----
     Cell data ``density``, ``velocity`` and ``pressure``, c_s^2 (rho - 1) over that of the fluid at rest; field
     data ``step`` and ``TimeValue``.
     """
@@ -201,7 +253,11 @@ class FieldOutput:
 class Checkpoint:
     """Saves the flow to ``path``; only a complete file of a sound state replaces the previous one.
 
-    ``guard`` None saves unchecked.
+    Parameters
+    ----------
+    every : steps from one checkpoint to the next.
+    path : of the file.
+    guard : what must hold for the state to be saved; None saves unchecked.
     """
 
     every: int

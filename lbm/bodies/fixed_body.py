@@ -36,21 +36,27 @@ class FixedBody(Body):
     ----------
     solid : boolean (nx, ny, nz), true where a cell centre lies inside.
     fraction : (19, nx, ny, nz), the fraction q in (0, 1] of each link that starts in a fluid cell and ends in
-        a solid one, in the order of :data:`lbm.fluid.stencil.C` (other values are not looked at); None for
-        half-way.
-    velocity : of the surface, 3 components.
-    origin : point about which ``torque`` is taken. Along periodic axes levers lead to the nearest image, so
-        that a body may lie across such faces if ``origin`` lies in its middle.
+        a solid one, in the order of :data:`lbm.fluid.stencil.C` (others are not looked at); None for half-way.
+    velocity : of the surface, 3 components in cells a step.
+    origin : point about which ``torque`` is taken, 3 components in cells. Along periodic axes levers lead to the
+        nearest image, so that a body may lie across such faces if ``origin`` lies in its middle.
 
-    ``force`` and ``torque`` (3,) are what the fluid did to the body in the last step, a mean over it, in
-    lattice units; pressure counts from that of the fluid at rest with density 1, as it must for a body that a
-    wall cuts. A body force on the fluid does not act on the body.
+    Attributes
+    ----------
+    force, torque : (3,), what the fluid did to the body in the last step, a mean over it, in lattice units.
+        Pressure counts from that of the fluid at rest with density 1, as it must for a body that a wall cuts. A
+        body force on the fluid does not act on the body.
 
+    Raises
+    ------
+    InputError
+        For arguments of wrong shape; ``add`` raises it for fractions out of range.
+
+    Notes
+    -----
     The body may touch the faces of the box: at a symmetry plane it meets its mirror image, and a link that
     crosses a wall, an inlet or an outlet belongs to that face. An outlet looks two cells inwards: keep the
     body that far from it. Density and velocity in solid cells mean nothing: leave them out of sums and pictures.
-
-    Raises :class:`InputError` for arguments of wrong shape; ``add`` raises it for fractions out of range.
     """
 
     def __init__(

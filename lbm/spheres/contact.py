@@ -30,7 +30,13 @@ _OVERLAPS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 
 @dataclass(frozen=True)
 class Impact:
-    """One contact: ``step`` (with fraction), speeds before and after it at the wall, or carried to it."""
+    """One contact.
+
+    Attributes
+    ----------
+    step : when, with the fraction of a step.
+    speed_in, speed_out : in cells a step, before and after it, at the wall or carried to it; not negative.
+    """
 
     step: float
     speed_in: float
@@ -39,8 +45,21 @@ class Impact:
 
 @dataclass(frozen=True)
 class FilmRebound:
-    """Rebound by an effective law: ``rebound(approach_speed, count)`` gives the speed after impact ``count``.
+    """Rebound by an effective law, as e_eff over the Stokes number.
 
+    Parameters
+    ----------
+    rebound : ``rebound(approach_speed, count)`` gives the speed after impact ``count`` (from 0), in cells a step.
+    edge : gap in cells outside which the law's speeds are those of the motion.
+    free_fall : acceleration towards the wall on the way out, in cells a step^2, not negative.
+
+    Raises
+    ------
+    InputError
+        For an edge or free fall out of range.
+
+    Notes
+    -----
     Both speeds are those of the motion outside the film, gap >= ``edge``, carried to the wall. The law speaks
     of the whole film, so within it the law moves the sphere and the fluid follows: inwards with the velocity
     at the edge and the mean acceleration of the last ``edge`` before it, outwards from the rebound speed with
@@ -61,8 +80,8 @@ class FilmRebound:
         """Every number of the contact; the law as it is at a few speeds, for the first bounces."""
         return {
             "kind": type(self).__name__,
-            "edge": self.edge,
-            "free_fall": self.free_fall,
+            "edge": float(self.edge),
+            "free_fall": float(self.free_fall),
             "rebound": sampled(self.rebound, [(speed, count) for speed in _SPEEDS for count in _BOUNCES]),
         }
 
@@ -71,8 +90,20 @@ class FilmRebound:
 class DryRebound:
     """Instantaneous rebound at the floor of the film: ``v_out = e_dry v_in``.
 
+    Parameters
+    ----------
+    e_dry : in (0, 1].
+    added_mass : of the fluid around the touching sphere, in lattice units; see :func:`lattice_added_mass`.
+
+    Raises
+    ------
+    InputError
+        For numbers out of range.
+
+    Notes
+    -----
     The fluid around the sphere, ``added_mass``, is reversed with it. What that takes comes not from the sphere
-    but from the wall, as for any body that carries other mass along; see :mod:`lbm.spheres.spheres.wall_motion`.
+    but from the wall, as for any body that carries other mass along; see :mod:`lbm.spheres.wall_motion`.
     """
 
     e_dry: float
@@ -87,13 +118,25 @@ class DryRebound:
 
     def describe(self) -> dict:
         """Every number of the contact."""
-        return {"kind": type(self).__name__, "e_dry": self.e_dry, "added_mass": self.added_mass}
+        return {"kind": type(self).__name__, "e_dry": float(self.e_dry), "added_mass": float(self.added_mass)}
 
 
 @dataclass(frozen=True)
 class SoftContact:
-    """Contact stretched over ``duration`` steps; ``force(overlap, rate, impact_speed)`` pushes from the wall.
+    """Contact stretched over many steps of the fluid.
 
+    Parameters
+    ----------
+    force : ``force(overlap, rate, impact_speed)`` pushes from the wall, in lattice units; overlap in cells.
+    duration : of the contact, in steps: what the sub-steps are chosen by.
+
+    Raises
+    ------
+    InputError
+        For a duration that is not positive.
+
+    Notes
+    -----
     ``rate`` is the velocity away from the wall. The fluid's force acts all the while. It can follow the
     reversal only if the contact lasts longer than sound needs to pass the sphere, some d/c_s.
     """
@@ -101,9 +144,12 @@ class SoftContact:
     force: Callable[[float, float, float], float]
     duration: float
 
+    def __post_init__(self) -> None:
+        arguments.positive("duration", self.duration)
+
     @classmethod
     def linear(cls, e_dry: float, mass: float, duration: float) -> SoftContact:
-        """Spring and dashpot that give ``mass``, with the fluid it carries, e_dry after ``duration``.
+        """Spring and dashpot that give ``mass``, with the fluid it carries, e_dry after ``duration`` steps.
 
         k = m (pi^2 + ln^2 e)/T^2, c = -2 m ln e/T, from the damped oscillator's half period.
         """
@@ -140,15 +186,31 @@ class SoftContact:
             for speed in (0.0, 1e-3, 1e-2)
             for impact_speed in (1e-3, 1e-1)
         ]
-        return {"kind": type(self).__name__, "duration": self.duration, "force": sampled(self.force, states)}
+        return {
+            "kind": type(self).__name__,
+            "duration": float(self.duration),
+            "force": sampled(self.force, states),
+        }
 
 
 Contact = FilmRebound | DryRebound | SoftContact
 
 
 def lattice_added_mass(diameter: float) -> float:
-    """Added mass, over the displaced mass, that the lattice gives a sphere touching a wall: ``diameter`` in cells.
+    """Added mass that the lattice gives a sphere touching a wall, over the displaced mass.
 
+    Parameters
+    ----------
+    diameter : float
+        In cells.
+
+    Raises
+    ------
+    InputError
+        For a diameter that is not positive.
+
+    Notes
+    -----
     C = 0.8031 - 1.33/diameter^(3/4). Potential flow gives (3/2) zeta(3) - 1 = 0.8031; the rest is what
     ``benchmarks/added_mass.py`` measures on the lattice, 8 to 24 cells a diameter, within 0.03.
     """

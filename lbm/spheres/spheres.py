@@ -2,7 +2,7 @@
 
 1. The fluid's populations are reflected at the surfaces, which gives force and torque
   (:mod:`lbm.spheres.spheres.exchange`).
-2. Each sphere moves (Crank-Nicolson), near a wall in sub-steps (:mod:`lbm.spheres.spheres.wall_motion`)::
+2. Each sphere moves (Crank-Nicolson), near a wall in sub-steps (:mod:`lbm.spheres.wall_motion`)::
 
        v' = v + F/m,  x' = x + (v + v')/2,  (I + I_f) (omega' - omega) = T + I_f (omega - omega_before)
 
@@ -37,7 +37,9 @@ from lbm.spheres.wall_motion import FRACTION, motion_at_wall
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
 """Columns of :meth:`Spheres.track`; f and t are force and torque of the fluid."""
+_MOVING = ("centres", "velocities", "spins", "spin_changes", "forces", "torques")
 _SMALLEST_RADIUS = 2.0
+"""In cells: below, a sphere is not resolved."""
 _STEPS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
 """Steps at which a description samples the drive."""
 _GAPS = (0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 0.9, 1.1, 1.5, 3.0)
@@ -46,7 +48,16 @@ _GAPS = (0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 0.9, 1.1, 1.5, 3.0)
 
 @dataclass(frozen=True)
 class Sphere:
-    """Start of one sphere: ``radius`` in cells, ``density`` over the fluid's, and its motion."""
+    """Start of one sphere.
+
+    Parameters
+    ----------
+    radius : in cells, at least 2.
+    density : over the fluid's rest density.
+    position : of the centre, (3,) in cells from the low corner of the box.
+    velocity : (3,) in cells a step.
+    spin : angular velocity, (3,) in radians a step.
+    """
 
     radius: float
     density: float
@@ -57,25 +68,39 @@ class Sphere:
 
 @dataclass(frozen=True)
 class SphereImpact(Impact):
-    """An impact of sphere number ``sphere`` at the wall ``face``, such as "z-"."""
+    """An impact of sphere number ``sphere`` (from 0) at the wall ``face``, such as "z-"."""
 
     sphere: int = 0
     face: str = ""
 
 
 class Spheres(Body):
-    """Moving spheres for one :class:`lbm.Simulation`; lattice units.
+    """Moving spheres for one :class:`lbm.Simulation`; lattice units. See the head of this module for the motion.
 
     Parameters
     ----------
-    spheres : where and how they start.
-    gravity : acceleration, 3 components; buoyancy follows, the fluid itself is not accelerated.
-    film, contact : what acts near no-slip walls beyond the fluid's force; without contact nothing stops it.
-    drive : ``drive(step, gap)`` gives the velocity of all spheres at the end of that step, or None, which sets
-        them free for good. Like all functions given here it depends on its arguments alone, for a checkpoint
-        knows it by what it gives at some of them.
-    interpolation : a scheme of :mod:`lbm.bodies.body.reflection`.
-    fraction : size of the sub-steps near a wall; see :mod:`lbm.spheres.spheres.wall_motion`.
+    spheres : where and how they start, a :class:`Sphere` each.
+    gravity : acceleration, (3,) in cells a step^2; buoyancy follows, the fluid itself is not accelerated.
+    film : what a film thinner than a cell adds to the fluid's force at no-slip walls, a :class:`lbm.spheres.Film`.
+    contact : what happens where a sphere touches such a wall, a record of :mod:`lbm.spheres.contact`; without one
+        nothing stops the sphere.
+    drive : ``drive(step, gap)`` gives the velocity (3,) of all spheres at the end of that step, or None, which
+        sets them free for good; ``gap`` in cells, to the nearest wall. Like all functions given here it depends on
+        its arguments alone, for a checkpoint knows it by what it gives at some of them.
+    interpolation : "linear" or "central-linear", a scheme of :mod:`lbm.bodies.reflection`.
+    fraction : size of the sub-steps at a wall, in (0, 0.5] of gap over speed; see :mod:`lbm.spheres.wall_motion`.
+
+    Attributes
+    ----------
+    radii, volumes, masses : (n,), of the n spheres.
+    centres, velocities, spins : (n, 3), now.
+    forces, torques : (n, 3), what the fluid did to them in the last step.
+    impacts : list of :class:`SphereImpact`, as they came.
+
+    Raises
+    ------
+    InputError
+        For arguments that cannot be used; ``add`` raises it for spheres that the box cannot hold.
     """
 
     def __init__(
@@ -114,7 +139,13 @@ class Spheres(Body):
         self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 6)) for r in self.radii]
 
     def track(self, sphere: int = 0) -> dict[str, np.ndarray]:
-        """Motion of one sphere, a row a step: :data:`COLUMNS` to arrays. ``gap`` is that to the nearest wall."""
+        """Motion of one sphere, a row a step.
+
+        Returns
+        -------
+        dict
+            By the names :data:`COLUMNS`, arrays (steps,); ``gap`` is that to the nearest wall, NaN without one.
+        """
         rows = np.array(self._tracks[sphere]).reshape(-1, len(COLUMNS))
         return {name: rows[:, i].copy() for i, name in enumerate(COLUMNS)}
 
@@ -206,13 +237,13 @@ class Spheres(Body):
             "film": None if self.film is None else self.film.describe(),
             "contact": None if self.contact is None else self.contact.describe(),
             "drive": sampled(self.drive, [(step, r * self.radii[0]) for step in _STEPS for r in _GAPS]),
-            "fraction": self.fraction,
+            "fraction": float(self.fraction),
         }
 
     def state(self) -> dict[str, np.ndarray]:
         """What changes in time."""
         return {
-            "motion": np.hstack(self._moving()),
+            **{name: getattr(self, name) for name in _MOVING},
             "at_walls": np.array([motion.numbers() for motion in self._at_walls.values()]),
             "impacts": np.array(
                 [(i.step, i.speed_in, i.speed_out, i.sphere, FACES.index(i.face)) for i in self.impacts]
@@ -221,13 +252,10 @@ class Spheres(Body):
             "tracks": np.array(self._tracks),
         }
 
-    def _moving(self) -> tuple[np.ndarray, ...]:
-        return self.centres, self.velocities, self.spins, self.spin_changes, self.forces, self.torques
-
     def set_state(self, state: dict[str, np.ndarray]) -> None:
         """Continue from a :meth:`state`."""
-        for own, saved in zip(self._moving(), np.hsplit(state["motion"], 6), strict=True):
-            own[...] = saved
+        for name in _MOVING:
+            getattr(self, name)[...] = state[name]
         for motion, numbers in zip(self._at_walls.values(), state["at_walls"], strict=True):
             motion.remember(numbers)
         self.impacts = [
