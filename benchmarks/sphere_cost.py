@@ -18,7 +18,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from lbm import Rates, Simulation
+from lbm import Body, Rates, Simulation
 from lbm.spheres import Sphere, Spheres
 from restitution.files import write_whole
 
@@ -28,7 +28,7 @@ TARGETS = {10: 0.15, 20: 0.10}
 _STEPS = 10
 
 
-class _Timed:
+class _Timed(Body):
     """A body whose calls are timed."""
 
     def __init__(self, body):

@@ -16,11 +16,12 @@ from lbm.bodies.body import Body
 from lbm.bodies.fixed_body import FixedBody
 from lbm.errors import DivergenceError, InputError, OutputError, OutsideRangeWarning
 from lbm.faces.records import FreeSlip, Inlet, NoSlip, Outlet, Periodic
+from lbm.flow import Flow
 from lbm.rates import Rates
 from lbm.scales import FlowScales, Scales
 from lbm.simulation import Simulation
 
 __all__ = [
-    "Body", "DivergenceError", "FixedBody", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip", "Outlet",
-    "OutputError", "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
+    "Body", "DivergenceError", "FixedBody", "Flow", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip",
+    "Outlet", "OutputError", "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
 ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""What may look at a simulation while it runs: objects with ``every`` (steps) and a call."""
+"""What may look at a flow while it runs: objects with ``every`` (steps) and a call."""
 
 from __future__ import annotations
 
@@ -6,31 +6,31 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from lbm import arguments
 from lbm.errors import DivergenceError, InputError
+from lbm.flow import Flow
 from lbm.fluid import fields
 from lbm.fluid.stencil import CS2
 from lbm.io.vtkhdf import write_image
 from lbm.scales import Scales
 
-if TYPE_CHECKING:
-    from lbm.simulation import Simulation
-
-
 __all__ = ["Average", "Checkpoint", "DivergenceGuard", "FieldOutput", "Observer", "Probe", "Sums", "checked"]
 
 
 class Observer(Protocol):
-    """Called with the simulation whenever its count of steps is a multiple of ``every``."""
+    """Called with the flow whenever its count of steps is a multiple of ``every``, and at the start of a flow.
+
+    It may look, not change: a run, ``set_flow`` and ``restore`` from within are refused.
+    """
 
     every: int
 
-    def __call__(self, simulation: Simulation) -> None:
-        """Look at ``simulation``."""
+    def __call__(self, flow: Flow) -> None:
+        """Look at ``flow``."""
 
 
 def checked(observers: Iterable[Observer]) -> list[Observer]:
@@ -53,7 +53,14 @@ _STABLE = 0.51
 
 @dataclass(frozen=True)
 class DivergenceGuard:
-    """Stops a run whose density or speed leaves ``density`` or ``top_speed`` (lattice units), or is NaN."""
+    """Stops a run whose density or speed goes out of range or is NaN.
+
+    Parameters
+    ----------
+    every : steps from one check to the next.
+    density : lowest and highest allowed, over the rest density.
+    top_speed : highest allowed, in cells a step.
+    """
 
     every: int = 100
     density: tuple[float, float] = (0.5, 2.0)
@@ -66,13 +73,13 @@ class DivergenceGuard:
             raise InputError(f"density = {arguments.shown(self.density)}: give the lowest and the highest allowed")
         arguments.positive("top_speed", self.top_speed)
 
-    def __call__(self, simulation: Simulation) -> None:
+    def __call__(self, flow: Flow) -> None:
         """Raise :class:`lbm.errors.DivergenceError` naming step, cell and value."""
-        sums = fields.plane_sums(simulation.lattice, simulation.force, self.density, self.top_speed)
+        sums = fields.plane_sums(flow.lattice, flow.force, self.density, self.top_speed)
         outside = sums[:, fields.SUMS.index("outside")]
         if not outside.any():
             return
-        rho, u = simulation.fields()
+        rho, u = flow.fields()
         speed = np.sqrt(np.sum(u.astype(float) ** 2, axis=0))
         low, high = self.density
         bad_density = ~((rho >= low) & (rho <= high))
@@ -80,14 +87,14 @@ class DivergenceGuard:
         cell = tuple(int(i) for i in np.argwhere(bad)[0])
         quantity, value = ("density", rho[cell]) if bad_density[cell] else ("speed", speed[cell])
         raise DivergenceError(
-            simulation.steps,
+            flow.steps,
             cell,
             quantity,
             float(value),
             f" (allowed: density {low:g} to {high:g}, speed up to {self.top_speed:g}); take more cells"
             + (
                 f": the relaxation time, {tau:.4f}, is close to 1/2"
-                if (tau := 0.5 + 3 * simulation.rates.viscosity) < _STABLE
+                if (tau := 0.5 + 3 * flow.rates.viscosity) < _STABLE
                 else ", or a lower lattice speed"
             ),
         )
@@ -95,8 +102,18 @@ class DivergenceGuard:
 
 @dataclass
 class Sums:
-    """Total mass, momentum and kinetic energy against time: ``steps``, ``rows`` (mass, px, py, pz, energy).
+    """Total mass, momentum and kinetic energy against time, in lattice units.
 
+    Parameters
+    ----------
+    every : steps from one row to the next.
+
+    Attributes
+    ----------
+    steps, rows : when, and mass, px, py, pz, energy then.
+
+    Notes
+    -----
     Mass is counted as excess over the fluid at rest, which keeps its round-off small.
     """
 
@@ -107,16 +124,26 @@ class Sums:
     def __post_init__(self) -> None:
         arguments.count("every", self.every, least=1)
 
-    def __call__(self, simulation: Simulation) -> None:
+    def __call__(self, flow: Flow) -> None:
         """Append one row."""
-        sums = fields.plane_sums(simulation.lattice, simulation.force)
-        self.steps.append(simulation.steps)
+        sums = fields.plane_sums(flow.lattice, flow.force)
+        self.steps.append(flow.steps)
         self.rows.append(np.array([math.fsum(column) for column in sums[:, :5].T]))
 
 
 @dataclass
 class Probe:
-    """Density and velocity at one ``cell`` against time: ``steps`` and ``rows`` (rho, ux, uy, uz)."""
+    """Density and velocity at one cell against time.
+
+    Parameters
+    ----------
+    every : steps from one row to the next.
+    cell : (i, j, k), from 0.
+
+    Attributes
+    ----------
+    steps, rows : when, and rho, ux, uy, uz then.
+    """
 
     every: int
     cell: tuple[int, int, int]
@@ -129,18 +156,28 @@ class Probe:
             raise InputError(f"cell = {arguments.shown(self.cell)}: give three whole numbers (i, j, k)")
         self.cell = tuple(arguments.count("cell", i) for i in self.cell)
 
-    def __call__(self, simulation: Simulation) -> None:
+    def __call__(self, flow: Flow) -> None:
         """Append one row."""
-        if not all(0 <= i < n for i, n in zip(self.cell, simulation.shape, strict=True)):
-            raise InputError(f"probe cell {self.cell}: outside the grid {simulation.shape}")
-        rho, u = fields.read_cell(simulation.lattice, self.cell, simulation.force)
-        self.steps.append(simulation.steps)
+        if not all(0 <= i < n for i, n in zip(self.cell, flow.shape, strict=True)):
+            raise InputError(f"probe cell {self.cell}: outside the grid {flow.shape}")
+        rho, u = fields.read_cell(flow.lattice, self.cell, flow.force)
+        self.steps.append(flow.steps)
         self.rows.append((rho, *u))
 
 
 @dataclass
 class Average:
-    """Mean of density and velocity over the calls: ``density`` and ``velocity``."""
+    """Mean of density and velocity over the calls.
+
+    Parameters
+    ----------
+    every : steps from one call to the next.
+
+    Attributes
+    ----------
+    count : calls so far.
+    density, velocity : (nx, ny, nz) and (3, nx, ny, nz), None before the first call.
+    """
 
     every: int
     count: int = 0
@@ -150,9 +187,9 @@ class Average:
     def __post_init__(self) -> None:
         arguments.count("every", self.every, least=1)
 
-    def __call__(self, simulation: Simulation) -> None:
+    def __call__(self, flow: Flow) -> None:
         """Take the present fields into the mean."""
-        rho, u = (f.astype(float) for f in simulation.fields())
+        rho, u = (f.astype(float) for f in flow.fields())
         self.count += 1
         if self.density is None or self.velocity is None:
             self.density, self.velocity = rho, u
@@ -163,8 +200,20 @@ class Average:
 
 @dataclass
 class FieldOutput:
-    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView, in SI if ``scales`` are given.
+    """Writes ``directory/stem_STEP.vtkhdf`` for ParaView.
 
+    Parameters
+    ----------
+    every : steps from one file to the next.
+    directory, stem : where, and the beginning of the files' names.
+    scales : to write in SI; None for lattice units.
+
+    Attributes
+    ----------
+    written : paths of the files so far.
+
+    Notes
+    -----
     Cell data ``density``, ``velocity`` and ``pressure``, c_s^2 (rho - 1) over that of the fluid at rest; field
     data ``step`` and ``TimeValue``.
     """
@@ -185,26 +234,30 @@ class FieldOutput:
                 f"scales = {arguments.shown(self.scales)}: give lbm.Scales, or None for lattice units"
             )
 
-    def __call__(self, simulation: Simulation) -> None:
+    def __call__(self, flow: Flow) -> None:
         """Write one file."""
-        path = Path(self.directory) / f"{self.stem}_{simulation.steps:08d}.vtkhdf"
-        rho, u = simulation.fields()
+        path = Path(self.directory) / f"{self.stem}_{flow.steps:08d}.vtkhdf"
+        rho, u = flow.fields()
         scales = self.scales or Scales(1.0, 1.0)
         written = {
             "density": scales.si(rho, "density"),
             "velocity": scales.si(u, "velocity"),
             "pressure": scales.si(CS2 * (rho - 1), "pressure"),
         }
-        now = scales.si(float(simulation.steps), "time")
-        write_image(path, written, spacing=scales.cell_m, step=simulation.steps, TimeValue=now)
+        now = scales.si(float(flow.steps), "time")
+        write_image(path, written, spacing=scales.cell_m, step=flow.steps, TimeValue=now)
         self.written.append(path)
 
 
 @dataclass
 class Checkpoint:
-    """Saves the simulation to ``path``; only a complete file of a sound state replaces the previous one.
+    """Saves the flow to ``path``; only a complete file of a sound state replaces the previous one.
 
-    ``guard`` None saves unchecked.
+    Parameters
+    ----------
+    every : steps from one checkpoint to the next.
+    path : of the file.
+    guard : what must hold for the state to be saved; None saves unchecked.
     """
 
     every: int
@@ -219,8 +272,8 @@ class Checkpoint:
                 f"guard = {arguments.shown(self.guard)}: give a DivergenceGuard, or None for no check"
             )
 
-    def __call__(self, simulation: Simulation) -> None:
+    def __call__(self, flow: Flow) -> None:
         """Check and save."""
         if self.guard is not None:
-            self.guard(simulation)
-        simulation.save(self.path)
+            self.guard(flow)
+        flow.save(self.path)

@@ -30,10 +30,25 @@ def _rate(viscosity: float, factor: float, name: str) -> float:
 
 @dataclass(frozen=True)
 class Rates:
-    """Relaxation rates, each in (0, 2).
+    """Relaxation rates of the moments of :mod:`lbm.fluid.moments`, per step, each in (0, 2).
 
-    ``nu`` stress p (sets the shear viscosity), ``e`` energy (bulk viscosity), ``eps`` energy square, ``q``
-    energy flux, ``pi`` fourth-order stress, ``m`` third-order antisymmetric moments.
+    Parameters
+    ----------
+    nu : of the stress p; sets the shear viscosity.
+    e : of the energy; sets the bulk viscosity.
+    eps : of the energy square.
+    q : of the energy flux.
+    pi : of the fourth-order stress.
+    m : of the third-order antisymmetric moments.
+
+    Raises
+    ------
+    InputError
+        For a rate outside (0, 2), or a viscosity that leads there.
+
+    Notes
+    -----
+    The presets take the viscosity in lattice units, cells^2 a step.
     """
 
     nu: float

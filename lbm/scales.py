@@ -34,7 +34,19 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
 
 @dataclass(frozen=True)
 class Scales:
-    """What one lattice unit is in SI: ``cell_m``, ``step_s``, ``density_kg_m3`` (lattice density 1)."""
+    """What one lattice unit is in SI.
+
+    Parameters
+    ----------
+    cell_m : length of a cell in m.
+    step_s : time step in s.
+    density_kg_m3 : of the fluid at rest, which is lattice density 1.
+
+    Raises
+    ------
+    InputError
+        For what is not a positive number.
+    """
 
     cell_m: float
     step_s: float
@@ -64,7 +76,12 @@ class Scales:
 class FlowScales:
     """A flow and its resolution, with the numbers that say whether the method can hold it.
 
-    Built by :meth:`from_conditions`. ``speed``, ``length``, ``viscosity`` are in lattice units.
+    Built by :meth:`from_conditions`.
+
+    Attributes
+    ----------
+    scales : :class:`Scales`.
+    speed, length, viscosity : in lattice units: cells a step, cells, cells^2 a step.
     """
 
     scales: Scales
@@ -83,9 +100,21 @@ class FlowScales:
         cells: float,
         lattice_speed: float = 0.05,
     ) -> FlowScales:
-        """Scales from physical conditions, ``cells`` per ``length_m`` and the lattice speed of ``speed_m_s``.
+        """Scales from physical conditions and a resolution.
 
-        Warns or refuses by :meth:`check`.
+        Parameters
+        ----------
+        length_m, speed_m_s, viscosity_m2_s, density_kg_m3 : float
+            Of the flow, in SI; the viscosity is the kinematic one.
+        cells : float
+            Cells per ``length_m``.
+        lattice_speed : float
+            What ``speed_m_s`` becomes, in cells a step; it sets the time step.
+
+        Raises
+        ------
+        InputError
+            For what cannot run; what runs inaccurately is warned of, both by :meth:`check`.
         """
         given = {
             "length_m": length_m,

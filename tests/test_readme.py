@@ -12,7 +12,6 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 
 
 PRINTED = (
-    r"(St +\d+\.\d: measured 0\.\d\d \+- 0\.\d\d, Legendre et al\. 0\.\d\d\n){4}",
     r"(?s).*K.*e_dry.*St.*eq4_.*\n",
     r"\[[^\]]+\] \[[^\]]+\]\n",
 )

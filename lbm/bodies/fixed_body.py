@@ -1,10 +1,9 @@
 """A solid body inside the box: a sparse list of links that cross its surface, reflected after every step.
 
-Linear interpolation of :mod:`lbm.bodies.reflection`, second order for curved and inclined surfaces. Force and
-torque on the body are those of Wen, Zhang, Tu, Wang & Fang, J. Comput. Phys. 266 (2014) 161, with f* what was sent
-along c_k to the surface at r, f' what comes back, u_w the surface's velocity::
+Linear interpolation of :mod:`lbm.bodies.reflection`, second order for curved and inclined surfaces. With p the
+momentum that the body takes at a link, which meets its surface at r::
 
-    F = sum (c_k - u_w) f* - (c_k' - u_w) f'          T = sum (r - r_0) x [(c_k - u_w) f* - (c_k' - u_w) f']
+    F = sum p,      T = sum (r - r_0) x p
 
 The bulk kernel runs over the solid cells as well; what it computes there never reaches the fluid.
 """
@@ -18,11 +17,12 @@ from numba import prange
 
 from lbm import arguments
 from lbm.bodies.body import Body
-from lbm.bodies.reflection import linear
+from lbm.bodies.reflection import LINEAR, Link, exchange_link
 from lbm.errors import InputError
 from lbm.fluid.cache import kernel
-from lbm.fluid.lattice import PERIODIC, SLIP, Grid, Lattice, incoming, outgoing
-from lbm.fluid.stencil import OPPOSITE, C, Q, W
+from lbm.fluid.fields import sent_density
+from lbm.fluid.lattice import PERIODIC, SLIP, Grid, Lattice
+from lbm.fluid.stencil import C, Q
 
 __all__ = ["FixedBody"]
 
@@ -36,21 +36,27 @@ class FixedBody(Body):
     ----------
     solid : boolean (nx, ny, nz), true where a cell centre lies inside.
     fraction : (19, nx, ny, nz), the fraction q in (0, 1] of each link that starts in a fluid cell and ends in
-        a solid one, in the order of :data:`lbm.fluid.stencil.C` (other values are not looked at); None for
-        half-way.
-    velocity : of the surface, 3 components.
-    origin : point about which ``torque`` is taken. Along periodic axes levers lead to the nearest image, so
-        that a body may lie across such faces if ``origin`` lies in its middle.
+        a solid one, in the order of :data:`lbm.fluid.stencil.C` (others are not looked at); None for half-way.
+    velocity : of the surface, 3 components in cells a step.
+    origin : point about which ``torque`` is taken, 3 components in cells. Along periodic axes levers lead to the
+        nearest image, so that a body may lie across such faces if ``origin`` lies in its middle.
 
-    ``force`` and ``torque`` (3,) are what the fluid did to the body in the last step, a mean over it, in
-    lattice units; pressure counts from that of the fluid at rest with density 1, as it must for a body that a
-    wall cuts. A body force on the fluid does not act on the body.
+    Attributes
+    ----------
+    force, torque : (3,), what the fluid did to the body in the last step, a mean over it, in lattice units.
+        Pressure counts from that of the fluid at rest with density 1, as it must for a body that a wall cuts. A
+        body force on the fluid does not act on the body.
 
+    Raises
+    ------
+    InputError
+        For arguments of wrong shape; ``add`` raises it for fractions out of range.
+
+    Notes
+    -----
     The body may touch the faces of the box: at a symmetry plane it meets its mirror image, and a link that
     crosses a wall, an inlet or an outlet belongs to that face. An outlet looks two cells inwards: keep the
     body that far from it. Density and velocity in solid cells mean nothing: leave them out of sums and pictures.
-
-    Raises :class:`InputError` for arguments of wrong shape; ``add`` raises it for fractions out of range.
     """
 
     def __init__(
@@ -107,7 +113,7 @@ class FixedBody(Body):
         self.fraction = np.concatenate(fractions)
         self._levers = self.links[:, :3] + 0.5 + self.fraction[:, None] * C[self.links[:, 3]] - self.origin
         for axis, n in enumerate(grid.shape):
-            if _faces(grid)[axis][0] == PERIODIC:
+            if grid.faces[2 * axis] == PERIODIC:
                 self._levers[:, axis] -= n * np.round(self._levers[:, axis] / n)
         self._sums = np.zeros((-(-len(self.links) // _CHUNK), 6))
         self._given = None  # the links hold what was used of it
@@ -137,13 +143,10 @@ class FixedBody(Body):
         self.force, self.torque = state["force"], state["torque"]
 
 
-def _faces(grid: Grid) -> tuple[tuple[int, int], ...]:
-    return (grid.x_low, grid.x_high), (grid.y_low, grid.y_high), (grid.z_low, grid.z_high)
-
-
 def _with_surroundings(solid: np.ndarray, grid: Grid) -> np.ndarray:
     """``solid`` and one layer around it: what a link through a face ends in; beyond a wall, nothing."""
-    for axis, kinds in enumerate(_faces(grid)):
+    for axis in range(3):
+        kinds = grid.faces[2 * axis : 2 * axis + 2]
         first, last = solid.take([0], axis), solid.take([-1], axis)
         layers = [
             {PERIODIC: image, SLIP: mirror}.get(kind, np.zeros_like(mirror))
@@ -160,25 +163,15 @@ def _shifted(padded: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 @kernel
 def _reflect(populations, grid, parity, links, fraction, u, levers, sums):
+    moves = u[0] != 0 or u[1] != 0 or u[2] != 0
     for chunk in prange(sums.shape[0]):
         fx = fy = fz = tx = ty = tz = 0.0
         first = np.int64(chunk) * _CHUNK
         for link in range(first, min(first + _CHUNK, links.shape[0])):
             x, y, z, k = links[link]
-            back = OPPOSITE[k]
-            sent = np.float64(populations[outgoing(grid, parity, k, x, y, z)])
-            sent_back = np.float64(populations[outgoing(grid, parity, back, x, y, z)])
-            arrived = np.float64(populations[incoming(grid, parity, k, x, y, z)])
-            push = C[k, 0] * u[0] + C[k, 1] * u[1] + C[k, 2] * u[2]
-            if push != 0:
-                rho = 1.0
-                for i in range(Q):
-                    rho += populations[outgoing(grid, parity, i, x, y, z)]
-                push *= 6 * W[k] * rho
-            value = linear(fraction[link], sent, sent_back, arrived, push)
-            populations[incoming(grid, parity, back, x, y, z)] = value
-            both, lost = sent + value, sent - value
-            px, py, pz = C[k, 0] * both - u[0] * lost, C[k, 1] * both - u[1] * lost, C[k, 2] * both - u[2] * lost
+            rho = sent_density(populations, grid, parity, x, y, z) if moves else 0.0
+            cut = Link(x, y, z, k, fraction[link])
+            px, py, pz = exchange_link(populations, grid, parity, LINEAR, cut, u, rho, False)
             rx, ry, rz = levers[link]
             fx += px
             fy += py

@@ -1,8 +1,8 @@
 """The six faces of the box: which boundary each one is.
 
 Periodic, free-slip and still no-slip faces cost nothing: they are in the map of :mod:`lbm.fluid.lattice`. What
-moving walls, inlets and outlets do after every step stands in :mod:`lbm.faces.passes`. All faces lie half a cell
-outside the outermost cell centres.
+moving walls, inlets and outlets do after every step stands in :mod:`lbm.faces.passes`. All faces lie half
+a cell outside the outermost cell centres.
 """
 
 from __future__ import annotations
@@ -39,9 +39,14 @@ class FreeSlip:
 
 @dataclass(frozen=True)
 class NoSlip:
-    """A wall, moving in its plane with ``velocity``: a vector, an array (n, m, 3) over the face, or a function
-    of time that gives either.
+    """A wall, at rest or moving in its plane.
 
+    Parameters
+    ----------
+    velocity : (3,), an array (n, m, 3) over the face, or a function of time that gives either; cells a step.
+
+    Notes
+    -----
     Time and velocity are in lattice units; the function is called half-way between two steps, before the
     second, and a function that fails then leaves the first one's flow. n and m run along the other two axes in
     the order x, y, z; the array holds the velocity above the centres of the cells.
@@ -54,8 +59,14 @@ class NoSlip:
 
 @dataclass(frozen=True)
 class Inlet:
-    """Fluid enters with ``velocity``, given as for :class:`NoSlip`, but in any direction.
+    """Fluid enters with a given velocity.
 
+    Parameters
+    ----------
+    velocity : as for :class:`NoSlip`, but in any direction.
+
+    Notes
+    -----
     Sound is reflected fully, here and at an outlet: start the fluid with the velocity it is to have.
 
     Beside a no-slip wall the links through the common edge have the wall's velocity. A profile that vanishes
@@ -69,8 +80,14 @@ class Inlet:
 
 @dataclass(frozen=True)
 class Outlet:
-    """Open face at ``density`` (pressure c_s^2 density); fluid may leave or enter.
+    """Open face at a given density; fluid may leave or enter.
 
+    Parameters
+    ----------
+    density : over the rest density; the pressure is c_s^2 times it.
+
+    Notes
+    -----
     The flow is taken as developed there: no change of velocity along the normal.
     """
 

@@ -126,6 +126,10 @@ def kernel(function=None, *, parallel=True):
     return compiled
 
 
+inlined = njit(forceinline=True, error_model="numpy", fastmath={"contract"})
+"""A function that kernels contain: compiled as they are, whichever of them is compiled first."""
+
+
 def compiled_count() -> int:
     """Kernel specialisations compiled in this process, as opposed to read from the cache."""
     return sum(sum(k.stats.cache_misses.values()) for k in _kernels)

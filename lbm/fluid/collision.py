@@ -15,8 +15,9 @@ Populations are deviations ``f_k - w_k`` from a fluid at rest of density 1, so `
 
 from __future__ import annotations
 
-from numba import njit
 from numba.extending import intrinsic
+
+from lbm.fluid.cache import inlined
 
 
 @intrinsic
@@ -29,7 +30,7 @@ def like(typingctx, value, x):
     return x(value, x), codegen
 
 
-@njit(forceinline=True, error_model="numpy", fastmath={"contract"})
+@inlined
 def collide(f, rates, force):
     """Populations after collision.
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, prange
 
-from lbm.fluid.cache import kernel
-from lbm.fluid.lattice import Lattice, incoming, lend, row_starts
+from lbm.fluid.cache import inlined, kernel
+from lbm.fluid.lattice import Lattice, incoming, lend, outgoing, row_starts
 from lbm.fluid.memory import load_cell
 from lbm.fluid.stencil import C, Q, W
 
-__all__ = ["SUMS", "plane_sums", "read", "read_cell", "write"]
+__all__ = ["SUMS", "plane_sums", "read", "read_cell", "sent_density", "write"]
 
 SUMS = ("mass", "momentum_x", "momentum_y", "momentum_z", "kinetic_energy", "outside")
 
@@ -29,6 +29,15 @@ def moments_of(f):
     jy = (yp - ym) + ((ap_am - bp_bm) + (ep_em + gp_gm))
     jz = (zp - zm) + ((cp_cm - dp_dm) + (ep_em - gp_gm))
     return rho, jx, jy, jz
+
+
+@inlined
+def sent_density(populations, grid, parity, x, y, z):
+    """Density of the cell (x, y, z) after the last collision, of the populations that it has sent."""
+    rho = 1.0
+    for k in range(Q):
+        rho += populations[outgoing(grid, parity, k, x, y, z)]
+    return rho
 
 
 @kernel

@@ -65,6 +65,11 @@ class Grid(NamedTuple):
         return (self.nx, self.ny, self.nz)
 
     @property
+    def faces(self) -> tuple[int, int, int, int, int, int]:
+        """What lies beyond the faces x-, x+, y-, y+, z-, z+."""
+        return (self.x_low, self.x_high, self.y_low, self.y_high, self.z_low, self.z_high)
+
+    @property
     def size(self) -> int:
         """Elements of the buffer."""
         return self.origin + Q * self.slot

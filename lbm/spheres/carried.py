@@ -1,7 +1,7 @@
 """Motion at a wall where an effective law owns the film: the law moves the sphere, and the fluid follows.
 
 Within one ``edge`` of the wall the sphere moves with constant acceleration: inwards the mean one of the last edge
-before, outwards that of its free fall; see :class:`lbm.spheres.contact.FilmRebound`.
+before, outwards that of its free fall; see :class:`lbm.spheres.spheres.contact.FilmRebound`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from lbm.spheres.motion import Motion
 
 
 class CarriedMotion(Motion):
-    """The motion of :class:`lbm.spheres.contact.FilmRebound`.
+    """The motion of :class:`lbm.spheres.spheres.contact.FilmRebound`.
 
     It remembers whether the sphere is ``inside`` the film (1 or 0) and with what ``acceleration``, time and
     velocity (``timed``, ``passed``) two edges away, and the ``count`` of impacts.

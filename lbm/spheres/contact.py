@@ -17,6 +17,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from lbm import arguments
 from lbm.errors import InputError
 from lbm.spheres.sampling import sampled
 
@@ -29,7 +30,13 @@ _OVERLAPS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 
 @dataclass(frozen=True)
 class Impact:
-    """One contact: ``step`` (with fraction), speeds before and after it at the wall, or carried to it."""
+    """One contact.
+
+    Attributes
+    ----------
+    step : when, with the fraction of a step.
+    speed_in, speed_out : in cells a step, before and after it, at the wall or carried to it; not negative.
+    """
 
     step: float
     speed_in: float
@@ -38,8 +45,21 @@ class Impact:
 
 @dataclass(frozen=True)
 class FilmRebound:
-    """Rebound by an effective law: ``rebound(approach_speed, count)`` gives the speed after impact ``count``.
+    """Rebound by an effective law, as e_eff over the Stokes number.
 
+    Parameters
+    ----------
+    rebound : ``rebound(approach_speed, count)`` gives the speed after impact ``count`` (from 0), in cells a step.
+    edge : gap in cells outside which the law's speeds are those of the motion.
+    free_fall : acceleration towards the wall on the way out, in cells a step^2, not negative.
+
+    Raises
+    ------
+    InputError
+        For an edge or free fall out of range.
+
+    Notes
+    -----
     Both speeds are those of the motion outside the film, gap >= ``edge``, carried to the wall. The law speaks
     of the whole film, so within it the law moves the sphere and the fluid follows: inwards with the velocity
     at the edge and the mean acceleration of the last ``edge`` before it, outwards from the rebound speed with
@@ -52,7 +72,7 @@ class FilmRebound:
     free_fall: float
 
     def __post_init__(self) -> None:
-        _positive(edge=self.edge)
+        arguments.positive("edge", self.edge)
         if not self.free_fall >= 0:
             raise InputError(f"free_fall = {self.free_fall:g}: must not be negative")
 
@@ -60,8 +80,8 @@ class FilmRebound:
         """Every number of the contact; the law as it is at a few speeds, for the first bounces."""
         return {
             "kind": type(self).__name__,
-            "edge": self.edge,
-            "free_fall": self.free_fall,
+            "edge": float(self.edge),
+            "free_fall": float(self.free_fall),
             "rebound": sampled(self.rebound, [(speed, count) for speed in _SPEEDS for count in _BOUNCES]),
         }
 
@@ -70,6 +90,18 @@ class FilmRebound:
 class DryRebound:
     """Instantaneous rebound at the floor of the film: ``v_out = e_dry v_in``.
 
+    Parameters
+    ----------
+    e_dry : in (0, 1].
+    added_mass : of the fluid around the touching sphere, in lattice units; see :func:`lattice_added_mass`.
+
+    Raises
+    ------
+    InputError
+        For numbers out of range.
+
+    Notes
+    -----
     The fluid around the sphere, ``added_mass``, is reversed with it. What that takes comes not from the sphere
     but from the wall, as for any body that carries other mass along; see :mod:`lbm.spheres.wall_motion`.
     """
@@ -78,7 +110,7 @@ class DryRebound:
     added_mass: float
 
     def __post_init__(self) -> None:
-        _positive(e_dry=self.e_dry)
+        arguments.positive("e_dry", self.e_dry)
         if self.e_dry > 1:
             raise InputError(f"e_dry = {self.e_dry:g}: must not exceed 1")
         if not self.added_mass >= 0:
@@ -86,13 +118,25 @@ class DryRebound:
 
     def describe(self) -> dict:
         """Every number of the contact."""
-        return {"kind": type(self).__name__, "e_dry": self.e_dry, "added_mass": self.added_mass}
+        return {"kind": type(self).__name__, "e_dry": float(self.e_dry), "added_mass": float(self.added_mass)}
 
 
 @dataclass(frozen=True)
 class SoftContact:
-    """Contact stretched over ``duration`` steps; ``force(overlap, rate, impact_speed)`` pushes from the wall.
+    """Contact stretched over many steps of the fluid.
 
+    Parameters
+    ----------
+    force : ``force(overlap, rate, impact_speed)`` pushes from the wall, in lattice units; overlap in cells.
+    duration : of the contact, in steps: what the sub-steps are chosen by.
+
+    Raises
+    ------
+    InputError
+        For a duration that is not positive.
+
+    Notes
+    -----
     ``rate`` is the velocity away from the wall. The fluid's force acts all the while. It can follow the
     reversal only if the contact lasts longer than sound needs to pass the sphere, some d/c_s.
     """
@@ -100,13 +144,16 @@ class SoftContact:
     force: Callable[[float, float, float], float]
     duration: float
 
+    def __post_init__(self) -> None:
+        arguments.positive("duration", self.duration)
+
     @classmethod
     def linear(cls, e_dry: float, mass: float, duration: float) -> SoftContact:
-        """Spring and dashpot that give ``mass``, with the fluid it carries, e_dry after ``duration``.
+        """Spring and dashpot that give ``mass``, with the fluid it carries, e_dry after ``duration`` steps.
 
         k = m (pi^2 + ln^2 e)/T^2, c = -2 m ln e/T, from the damped oscillator's half period.
         """
-        _positive(e_dry=e_dry, mass=mass, duration=duration)
+        _check(e_dry, mass, duration)
         stiffness = mass * (math.pi**2 + math.log(e_dry) ** 2) / duration**2
         damping = -2 * mass * math.log(e_dry) / duration
         return cls(lambda overlap, rate, _: max(0.0, stiffness * overlap - damping * rate), duration)
@@ -118,7 +165,7 @@ class SoftContact:
         Coefficients of Ray, Kempe & Frohlich (2015) as printed by Biegert, Vowinckel & Meiburg,
         J. Comput. Phys. 340 (2017) 105, appendix B; they give e_dry to 1.3 % above e_dry = 0.7.
         """
-        _positive(e_dry=e_dry, mass=mass, duration=duration)
+        _check(e_dry, mass, duration)
         eta, alpha, tau = math.log(e_dry) ** 2, 1.111, 3.218
         scale = alpha**2 * tau**2
         damping = (-0.5 * 0.744 * eta + math.sqrt(0.25 * 0.744**2 * eta**2 + scale * eta)) / scale
@@ -139,27 +186,37 @@ class SoftContact:
             for speed in (0.0, 1e-3, 1e-2)
             for impact_speed in (1e-3, 1e-1)
         ]
-        return {"kind": type(self).__name__, "duration": self.duration, "force": sampled(self.force, states)}
+        return {
+            "kind": type(self).__name__,
+            "duration": float(self.duration),
+            "force": sampled(self.force, states),
+        }
 
 
 Contact = FilmRebound | DryRebound | SoftContact
 
 
 def lattice_added_mass(diameter: float) -> float:
-    """Added mass, over the displaced mass, that the lattice gives a sphere touching a wall: ``diameter`` in cells.
+    """Added mass that the lattice gives a sphere touching a wall, over the displaced mass.
 
+    Parameters
+    ----------
+    diameter : float
+        In cells.
+
+    Raises
+    ------
+    InputError
+        For a diameter that is not positive.
+
+    Notes
+    -----
     C = 0.8031 - 1.33/diameter^(3/4). Potential flow gives (3/2) zeta(3) - 1 = 0.8031; the rest is what
     ``benchmarks/added_mass.py`` measures on the lattice, 8 to 24 cells a diameter, within 0.03.
     """
-    return 0.8030853547 - 1.33 / _positive_number(diameter) ** 0.75
+    return 0.8030853547 - 1.33 / arguments.positive("diameter", diameter) ** 0.75
 
 
-def _positive_number(value: float) -> float:
-    _positive(diameter=value)
-    return value
-
-
-def _positive(**values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0):
-            raise InputError(f"{name} = {value:g}: must be finite and greater than 0")
+def _check(e_dry: float, mass: float, duration: float) -> None:
+    for name, value in {"e_dry": e_dry, "mass": mass, "duration": duration}.items():
+        arguments.positive(name, value)

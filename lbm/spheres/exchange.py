@@ -1,12 +1,6 @@
-"""Momentum exchange of spheres and fluid: links are reflected at the surface, force and torque collected.
+"""Momentum exchange of spheres and fluid: the links through the surface are found cell by cell and reflected.
 
-The force on the sphere is that of Wen, Zhang, Tu, Wang & Fang, J. Comput. Phys. 266 (2014) 161, which does not
-depend on the frame::
-
-    F = sum over links of (c_k - u_w) f*_k - (c_k' - u_w) f_k'
-
-taken of the deviations from rest: the pressure of the fluid at rest, which sums to zero over a closed
-surface, would press a sphere that touches a wall against it.
+Force and torque are the sums over the links of what :func:`lbm.bodies.reflection.exchange_link` gives.
 """
 
 from __future__ import annotations
@@ -16,32 +10,30 @@ import math
 import numpy as np
 from numba import njit, prange
 
-from lbm.bodies.reflection import reflect
+from lbm.bodies.reflection import Link, exchange_link
 from lbm.fluid.cache import kernel
-from lbm.fluid.lattice import incoming, outgoing
-from lbm.fluid.stencil import OPPOSITE, C, Q, W
-from lbm.spheres.surface import REACH, cut, inside, inside_any, wrapped
+from lbm.fluid.fields import sent_density
+from lbm.fluid.lattice import outgoing
+from lbm.fluid.stencil import C, Q
+from lbm.spheres.surface import REACH, cut, inside, inside_any, surface_velocity, wrapped
 
 
 @kernel
-def exchange(populations, grid, parity, scheme, centres, radii, velocities, spins, s, sums):
+def exchange(populations, grid, parity, scheme, surfaces, s, sums):
     """Reflect all links of sphere ``s``; its ``sums`` (planes, 6) get force and torque plane by plane.
 
     Sums over planes are added in their order by the caller, so they do not depend on the number of threads.
     """
-    radius = radii[s]
-    first = np.int64(math.floor(centres[s, 2] - radius - REACH - 0.5))
+    first = np.int64(math.floor(surfaces.centres[s, 2] - surfaces.radii[s] - REACH - 0.5))
     for plane in prange(sums.shape[0]):
         for i in range(6):
             sums[plane, i] = 0.0
-        _exchange_plane(
-            populations, grid, parity, scheme, centres, radii, velocities[s], spins[s], s,
-            first + np.int64(plane), sums[plane],
-        )  # fmt: skip
+        _exchange_plane(populations, grid, parity, scheme, surfaces, s, first + np.int64(plane), sums[plane])
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def _exchange_plane(populations, grid, parity, scheme, centres, radii, velocity, spin, s, plane, sums):
+def _exchange_plane(populations, grid, parity, scheme, surfaces, s, plane, sums):
+    centres, radii = surfaces.centres, surfaces.radii
     radius, reach = radii[s], radii[s] + REACH
     cx, cy, cz = centres[s, 0], centres[s, 1], centres[s, 2]
     z = wrapped(plane, grid.nz, grid.z_low)
@@ -72,27 +64,15 @@ def _exchange_plane(populations, grid, parity, scheme, centres, radii, velocity,
                 ):
                     continue  # the wall lies in between
                 if rho == 0.0:
-                    rho = 1.0
-                    for i in range(Q):
-                        rho += populations[outgoing(grid, parity, i, x, y, z)]
+                    rho = sent_density(populations, grid, parity, x, y, z)
                 q = cut(dx, dy, dz, k, radius)
                 rx, ry, rz = dx + q * C[k, 0], dy + q * C[k, 1], dz + q * C[k, 2]
-                ux = velocity[0] + spin[1] * rz - spin[2] * ry
-                uy = velocity[1] + spin[2] * rx - spin[0] * rz
-                uz = velocity[2] + spin[0] * ry - spin[1] * rx
-                back = OPPOSITE[k]
-                sent = np.float64(populations[outgoing(grid, parity, k, x, y, z)])
-                sent_back = np.float64(populations[outgoing(grid, parity, back, x, y, z)])
-                arrived = np.float64(populations[incoming(grid, parity, k, x, y, z)])
-                if _solid_behind(grid, cell, row, plane, k, centres, radii):
-                    q, arrived = 0.5, sent_back  # nothing arrives from behind: half-way
-                push = 6 * W[k] * rho * (C[k, 0] * ux + C[k, 1] * uy + C[k, 2] * uz)
-                value = reflect(scheme, q, sent, sent_back, arrived, push)
-                populations[incoming(grid, parity, back, x, y, z)] = value
+                u = surface_velocity(surfaces, s, rx, ry, rz)
+                behind = _solid_behind(grid, cell, row, plane, k, centres, radii)
+                link = Link(x, y, z, k, q)
+                fx, fy, fz = exchange_link(populations, grid, parity, scheme, link, u, rho, behind)
                 # What was sent into the sphere goes no further: its cells are swept too, and stay at rest.
                 populations[outgoing(grid, parity, k, x, y, z)] = 0.0
-                both, lost = sent + value, sent - value
-                fx, fy, fz = C[k, 0] * both - ux * lost, C[k, 1] * both - uy * lost, C[k, 2] * both - uz * lost
                 sums[0] += fx
                 sums[1] += fy
                 sums[2] += fz

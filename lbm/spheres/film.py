@@ -47,9 +47,18 @@ Tangential = Callable[[float, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndar
 
 @dataclass(frozen=True)
 class Film:
-    """Below the gap ``cut_off`` act ``normal`` and ``tangential``; below ``floor`` they stay as they are there.
+    """What acts on a sphere below the gap ``cut_off``; below ``floor`` forces stay as they are there.
 
-    Gaps in cells. ``floor`` is the height at which the rough surfaces touch.
+    Parameters
+    ----------
+    cut_off : in cells.
+    floor : in cells, greater than 0 and less than ``cut_off``: the height at which the rough surfaces touch.
+    normal, tangential : functions, see the head of this module; None for no such force.
+
+    Raises
+    ------
+    InputError
+        For a floor that does not lie between 0 and the cut-off.
     """
 
     cut_off: float
@@ -67,8 +76,8 @@ class Film:
         """Every number of the film; its forces as they are at a few gaps and motions."""
         gaps = [self.floor, *(share * self.cut_off for share in _SHARES if share * self.cut_off > self.floor)]
         return {
-            "cut_off": self.cut_off,
-            "floor": self.floor,
+            "cut_off": float(self.cut_off),
+            "floor": float(self.floor),
             "normal": sampled(self.normal, [(gap, *motion) for gap in gaps for motion in _ACROSS]),
             "tangential": sampled(
                 self.tangential and (lambda *given: np.concatenate(self.tangential(*given))),

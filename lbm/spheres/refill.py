@@ -14,22 +14,16 @@ import numpy as np
 from numba import njit
 
 from lbm.fluid.cache import kernel
+from lbm.fluid.equilibrium import equilibrium
 from lbm.fluid.lattice import incoming
-from lbm.fluid.stencil import C, Q, W
-from lbm.spheres.surface import inside, inside_any, wrapped
-
-
-@njit
-def equilibrium(k, drho, ux, uy, uz):
-    """Deviation from rest of the second-order equilibrium."""
-    cu = 3 * (C[k, 0] * ux + C[k, 1] * uy + C[k, 2] * uz)
-    return W[k] * (drho + (1 + drho) * (cu + 0.5 * cu * cu - 1.5 * (ux * ux + uy * uy + uz * uz)))
+from lbm.fluid.stencil import C, Q
+from lbm.spheres.surface import inside, inside_any, surface_velocity, wrapped
 
 
 @kernel(parallel=False)
-def refill(populations, grid, parity, before, centres, radii, velocities, spins, s):
-    """Fill the cells that sphere ``s`` covered with the centres ``before`` and does not with ``centres``."""
-    radius = radii[s]
+def refill(populations, grid, parity, before, surfaces, s):
+    """Fill the cells that sphere ``s`` covered with the centres ``before`` and no sphere covers now."""
+    radius = surfaces.radii[s]
     around = radius + 0.5
     for plane in range(math.floor(before[s, 2] - around), math.ceil(before[s, 2] + around) + 1):
         z = wrapped(plane, grid.nz, grid.z_low)
@@ -43,29 +37,23 @@ def refill(populations, grid, parity, before, centres, radii, velocities, spins,
                 x = wrapped(cell, grid.nx, grid.x_low)
                 if x < 0:
                     continue
-                if not inside(
-                    cell + 0.5 - before[s, 0], row + 0.5 - before[s, 1], plane + 0.5 - before[s, 2], radius
-                ) or inside_any(grid, x, y, z, centres, radii):
-                    continue
                 dx, dy, dz = cell + 0.5 - before[s, 0], row + 0.5 - before[s, 1], plane + 0.5 - before[s, 2]
-                velocity, spin = velocities[s], spins[s]
-                u = (
-                    velocity[0] + spin[1] * dz - spin[2] * dy,
-                    velocity[1] + spin[2] * dx - spin[0] * dz,
-                    velocity[2] + spin[0] * dy - spin[1] * dx,
-                )
-                _fill(populations, grid, parity, cell, row, plane, (dx, dy, dz), u, before, centres, radii)
+                if not inside(dx, dy, dz, radius) or inside_any(grid, x, y, z, surfaces.centres, surfaces.radii):
+                    continue
+                u = surface_velocity(surfaces, s, dx, dy, dz)
+                _fill(populations, grid, parity, (cell, row, plane), (dx, dy, dz), u, before, surfaces)
 
 
 @njit
-def _fill(populations, grid, parity, cell, row, plane, normal, u, before, centres, radii):
+def _fill(populations, grid, parity, place, normal, u, before, surfaces):
+    cell, row, plane = place
     x = wrapped(cell, grid.nx, grid.x_low)
     y = wrapped(row, grid.ny, grid.y_low)
     z = wrapped(plane, grid.nz, grid.z_low)
     best, best_along = 0, -2.0
     neighbours = 0
     for k in range(1, Q):
-        if not _was_fluid(grid, cell + C[k, 0], row + C[k, 1], plane + C[k, 2], before, centres, radii):
+        if not _was_fluid(grid, cell + C[k, 0], row + C[k, 1], plane + C[k, 2], before, surfaces):
             continue
         neighbours += 1
         along = (C[k, 0] * normal[0] + C[k, 1] * normal[1] + C[k, 2] * normal[2]) / math.sqrt(
@@ -95,10 +83,11 @@ def _fill(populations, grid, parity, cell, row, plane, normal, u, before, centre
 
 
 @njit
-def _was_fluid(grid, cell, row, plane, before, centres, radii):
+def _was_fluid(grid, cell, row, plane, before, surfaces):
     x = wrapped(cell, grid.nx, grid.x_low)
     y = wrapped(row, grid.ny, grid.y_low)
     z = wrapped(plane, grid.nz, grid.z_low)
     if x < 0 or y < 0 or z < 0:
         return False
-    return not (inside_any(grid, x, y, z, before, radii) or inside_any(grid, x, y, z, centres, radii))
+    radii = surfaces.radii
+    return not (inside_any(grid, x, y, z, before, radii) or inside_any(grid, x, y, z, surfaces.centres, radii))

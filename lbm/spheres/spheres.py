@@ -1,7 +1,7 @@
 """Spheres that move in the fluid: what happens to them after each step of the fluid.
 
 1. The fluid's populations are reflected at the surfaces, which gives force and torque
-  (:mod:`lbm.spheres.exchange`).
+  (:mod:`lbm.spheres.spheres.exchange`).
 2. Each sphere moves (Crank-Nicolson), near a wall in sub-steps (:mod:`lbm.spheres.wall_motion`)::
 
        v' = v + F/m,  x' = x + (v + v')/2,  (I + I_f) (omega' - omega) = T + I_f (omega - omega_before)
@@ -9,7 +9,7 @@
    F with gravity and buoyancy; the fluid's force is its momentum exchange over the very step. I_f is the moment
    of inertia of the displaced fluid: the last two terms cancel for all but changes from step to step, which in
    fluid of low viscosity would otherwise grow, the fluid having no pressure to pass on a torque at once.
-3. Cells that come free are filled (:mod:`lbm.spheres.refill`).
+3. Cells that come free are filled (:mod:`lbm.spheres.spheres.refill`).
 """
 
 from __future__ import annotations
@@ -20,21 +20,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lbm import arguments
+from lbm.bodies.body import Body
 from lbm.bodies.reflection import SCHEMES
 from lbm.errors import InputError
+from lbm.faces.records import FACES
 from lbm.fluid.lattice import BOUNCE, PERIODIC, Lattice
 from lbm.spheres.contact import Contact, Impact
 from lbm.spheres.exchange import exchange
 from lbm.spheres.film import Film
 from lbm.spheres.refill import refill
 from lbm.spheres.sampling import sampled
-from lbm.spheres.surface import REACH
+from lbm.spheres.surface import REACH, Surfaces
 from lbm.spheres.wall_motion import FRACTION, motion_at_wall
 
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
 """Columns of :meth:`Spheres.track`; f and t are force and torque of the fluid."""
+_MOVING = ("centres", "velocities", "spins", "spin_changes", "forces", "torques")
 _SMALLEST_RADIUS = 2.0
+"""In cells: below, a sphere is not resolved."""
 _STEPS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
 """Steps at which a description samples the drive."""
 _GAPS = (0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 0.9, 1.1, 1.5, 3.0)
@@ -43,7 +48,16 @@ _GAPS = (0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 0.9, 1.1, 1.5, 3.0)
 
 @dataclass(frozen=True)
 class Sphere:
-    """Start of one sphere: ``radius`` in cells, ``density`` over the fluid's, and its motion."""
+    """Start of one sphere.
+
+    Parameters
+    ----------
+    radius : in cells, at least 2.
+    density : over the fluid's rest density.
+    position : of the centre, (3,) in cells from the low corner of the box.
+    velocity : (3,) in cells a step.
+    spin : angular velocity, (3,) in radians a step.
+    """
 
     radius: float
     density: float
@@ -54,25 +68,39 @@ class Sphere:
 
 @dataclass(frozen=True)
 class SphereImpact(Impact):
-    """An impact of sphere number ``sphere`` at the wall ``face``, such as "z-"."""
+    """An impact of sphere number ``sphere`` (from 0) at the wall ``face``, such as "z-"."""
 
     sphere: int = 0
     face: str = ""
 
 
-class Spheres:
-    """Moving spheres for one :class:`lbm.Simulation`; lattice units.
+class Spheres(Body):
+    """Moving spheres for one :class:`lbm.Simulation`; lattice units. See the head of this module for the motion.
 
     Parameters
     ----------
-    spheres : where and how they start.
-    gravity : acceleration, 3 components; buoyancy follows, the fluid itself is not accelerated.
-    film, contact : what acts near no-slip walls beyond the fluid's force; without contact nothing stops it.
-    drive : ``drive(step, gap)`` gives the velocity of all spheres at the end of that step, or None, which sets
-        them free for good. Like all functions given here it depends on its arguments alone, for a checkpoint
-        knows it by what it gives at some of them.
-    interpolation : a scheme of :mod:`lbm.bodies.reflection`.
-    fraction : size of the sub-steps near a wall; see :mod:`lbm.spheres.wall_motion`.
+    spheres : where and how they start, a :class:`Sphere` each.
+    gravity : acceleration, (3,) in cells a step^2; buoyancy follows, the fluid itself is not accelerated.
+    film : what a film thinner than a cell adds to the fluid's force at no-slip walls, a :class:`lbm.spheres.Film`.
+    contact : what happens where a sphere touches such a wall, a record of :mod:`lbm.spheres.contact`; without one
+        nothing stops the sphere.
+    drive : ``drive(step, gap)`` gives the velocity (3,) of all spheres at the end of that step, or None, which
+        sets them free for good; ``gap`` in cells, to the nearest wall. Like all functions given here it depends on
+        its arguments alone, for a checkpoint knows it by what it gives at some of them.
+    interpolation : "linear" or "central-linear", a scheme of :mod:`lbm.bodies.reflection`.
+    fraction : size of the sub-steps at a wall, in (0, 0.5] of gap over speed; see :mod:`lbm.spheres.wall_motion`.
+
+    Attributes
+    ----------
+    radii, volumes, masses : (n,), of the n spheres.
+    centres, velocities, spins : (n, 3), now.
+    forces, torques : (n, 3), what the fluid did to them in the last step.
+    impacts : list of :class:`SphereImpact`, as they came.
+
+    Raises
+    ------
+    InputError
+        For arguments that cannot be used; ``add`` raises it for spheres that the box cannot hold.
     """
 
     def __init__(
@@ -88,16 +116,16 @@ class Spheres:
     ):
         if interpolation not in SCHEMES:
             raise InputError(f"interpolation {interpolation!r} unknown; known: {', '.join(SCHEMES)}")
-        self.radii = np.array([_positive("radius", s.radius) for s in spheres])
+        self.radii = np.array([arguments.positive("radius", s.radius) for s in spheres])
         if self.radii.size == 0 or self.radii.min() < _SMALLEST_RADIUS:
             raise InputError(f"radius: at least {_SMALLEST_RADIUS:g} cells are needed to resolve a sphere")
         self.volumes = 4 / 3 * np.pi * self.radii**3
-        self.masses = self.volumes * [_positive("density", s.density) for s in spheres]
-        self.centres = _vectors("position", [s.position for s in spheres])
-        self.velocities = _vectors("velocity", [s.velocity for s in spheres])
-        self.spins = _vectors("spin", [s.spin for s in spheres])
+        self.masses = self.volumes * [arguments.positive("density", s.density) for s in spheres]
+        self.centres = np.array([arguments.vector("position", s.position) for s in spheres])
+        self.velocities = np.array([arguments.vector("velocity", s.velocity) for s in spheres])
+        self.spins = np.array([arguments.vector("spin", s.spin) for s in spheres])
         self.spin_changes = np.zeros_like(self.spins)
-        self.gravity = _vectors("gravity", [gravity])[0]
+        self.gravity = arguments.vector("gravity", gravity).copy()
         self.film, self.contact, self.drive = film, contact, drive
         self.fraction = fraction
         self.scheme = SCHEMES[interpolation]
@@ -111,7 +139,13 @@ class Spheres:
         self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 6)) for r in self.radii]
 
     def track(self, sphere: int = 0) -> dict[str, np.ndarray]:
-        """Motion of one sphere, a row a step: :data:`COLUMNS` to arrays. ``gap`` is that to the nearest wall."""
+        """Motion of one sphere, a row a step.
+
+        Returns
+        -------
+        dict
+            By the names :data:`COLUMNS`, arrays (steps,); ``gap`` is that to the nearest wall, NaN without one.
+        """
         rows = np.array(self._tracks[sphere]).reshape(-1, len(COLUMNS))
         return {name: rows[:, i].copy() for i, name in enumerate(COLUMNS)}
 
@@ -120,14 +154,14 @@ class Spheres:
         if step > 0:
             return
         grid = lattice.grid
-        faces = np.array([grid.x_low, grid.x_high, grid.y_low, grid.y_high, grid.z_low, grid.z_high])
+        faces = np.array(grid.faces)
         for s, (r, centre) in enumerate(zip(self.radii, self.centres, strict=True)):
             if 2 * (r + REACH) > min(grid.shape):
                 raise InputError(f"sphere {s}: diameter {2 * r:g} cells in a box of {grid.shape}: enlarge the box")
             for face in np.flatnonzero(faces != PERIODIC):
                 gap = _gap(centre, r, face, grid.shape)
                 if gap < 0:
-                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {_FACES[face]}")
+                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {FACES[face]}")
             for other in range(s):
                 apart = self.centres[other] - centre
                 apart -= np.where(faces[::2] == PERIODIC, grid.shape * np.round(apart / grid.shape), 0.0)
@@ -137,24 +171,24 @@ class Spheres:
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Exchange momentum, move, refill."""
         grid, populations, parity = lattice.grid, lattice.populations, lattice.parity
-        surfaces = self.centres, self.radii, self.velocities, self.spins
+        surfaces = Surfaces(self.centres, self.radii, self.velocities, self.spins)
         for s, sums in enumerate(self._sums):
-            exchange(populations, grid, parity, self.scheme, *surfaces, s, sums)
+            exchange(populations, grid, parity, self.scheme, surfaces, s, sums)
             self.forces[s], self.torques[s] = np.add.reduce(sums[:, :3]), np.add.reduce(sums[:, 3:])
         before = self.centres.copy()
         for s in range(len(self.radii)):
             self._move(s, float(step), grid)
         for s in range(len(self.radii)):
-            refill(populations, grid, parity, before, *surfaces, s)
+            refill(populations, grid, parity, before, surfaces, s)
 
     def _move(self, s: int, step: float, grid) -> None:
-        walls = [f for f, kind in enumerate(grid[6:]) if kind == BOUNCE]
+        walls = [f for f, kind in enumerate(grid.faces) if kind == BOUNCE]
         gaps = {f: _gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls}
         nearest = min(gaps.values(), default=math.inf)
-        given = None if self._free else self.drive(step + 1, nearest)
+        given = None if self._free or self.drive is None else self.drive(step + 1, nearest)
         v = self.velocities[s].copy()
         if given is not None:
-            new = _vectors("drive", [given])[0]
+            new = arguments.vector("drive", given)
             self.centres[s] += 0.5 * (v + new)
         else:
             self._free = True
@@ -185,7 +219,7 @@ class Spheres:
             new[axis] = sign * speed
             centre[axis] = self.centres[s, axis] + sign * (after - gap)
             self.impacts += [
-                SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=_FACES[f]) for i in impacts
+                SphereImpact(i.step, i.speed_in, i.speed_out, sphere=s, face=FACES[f]) for i in impacts
             ]
         self.centres[s] = centre
         shell = 0.4 * self.volumes[s] * radius**2
@@ -203,39 +237,33 @@ class Spheres:
             "film": None if self.film is None else self.film.describe(),
             "contact": None if self.contact is None else self.contact.describe(),
             "drive": sampled(self.drive, [(step, r * self.radii[0]) for step in _STEPS for r in _GAPS]),
-            "fraction": self.fraction,
+            "fraction": float(self.fraction),
         }
 
     def state(self) -> dict[str, np.ndarray]:
         """What changes in time."""
         return {
-            "motion": np.hstack(self._moving()),
+            **{name: getattr(self, name) for name in _MOVING},
             "at_walls": np.array([motion.numbers() for motion in self._at_walls.values()]),
             "impacts": np.array(
-                [(i.step, i.speed_in, i.speed_out, i.sphere, _FACES.index(i.face)) for i in self.impacts]
+                [(i.step, i.speed_in, i.speed_out, i.sphere, FACES.index(i.face)) for i in self.impacts]
             ).reshape(-1, 5),
             "free": np.array([self._free]),
             "tracks": np.array(self._tracks),
         }
 
-    def _moving(self) -> tuple[np.ndarray, ...]:
-        return self.centres, self.velocities, self.spins, self.spin_changes, self.forces, self.torques
-
     def set_state(self, state: dict[str, np.ndarray]) -> None:
         """Continue from a :meth:`state`."""
-        for own, saved in zip(self._moving(), np.hsplit(state["motion"], 6), strict=True):
-            own[...] = saved
+        for name in _MOVING:
+            getattr(self, name)[...] = state[name]
         for motion, numbers in zip(self._at_walls.values(), state["at_walls"], strict=True):
             motion.remember(numbers)
         self.impacts = [
-            SphereImpact(*(float(x) for x in row[:3]), sphere=int(row[3]), face=_FACES[int(row[4])])
-            for row in state["impacts"]
+            SphereImpact(float(step), float(speed_in), float(speed_out), int(sphere), FACES[int(face)])
+            for step, speed_in, speed_out, sphere, face in state["impacts"]
         ]
         self._free = bool(state["free"][0])
         self._tracks = [[tuple(float(x) for x in row) for row in track] for track in state["tracks"]]
-
-
-_FACES = ("x-", "x+", "y-", "y+", "z-", "z+")
 
 
 def _away(face: int) -> int:
@@ -246,16 +274,3 @@ def _away(face: int) -> int:
 def _gap(centre: np.ndarray, radius: float, face: int, shape: tuple[int, int, int]) -> float:
     axis = face // 2
     return float(centre[axis] - radius if face % 2 == 0 else shape[axis] - centre[axis] - radius)
-
-
-def _positive(name: str, value: float) -> float:
-    if not (math.isfinite(value) and value > 0):
-        raise InputError(f"{name} = {value!r}: must be finite and greater than 0")
-    return float(value)
-
-
-def _vectors(name: str, given) -> np.ndarray:
-    vectors = np.array(given, dtype=float)
-    if vectors.ndim != 2 or vectors.shape[1] != 3 or not np.isfinite(vectors).all():
-        raise InputError(f"{name} = {given!r}: give 3 finite components")
-    return vectors

@@ -1,16 +1,39 @@
-"""Where a sphere's surface meets the lattice: which cell centres lie inside, and where it cuts a link."""
+"""The surfaces of spheres on the lattice: which cell centres lie inside, where a link is cut, how they move."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+import numpy as np
 from numba import njit
 
+from lbm.fluid.cache import inlined
 from lbm.fluid.lattice import PERIODIC
 from lbm.fluid.stencil import C
 
 REACH = math.sqrt(2.0)
 """Length of the longest link: no fluid cell further than this from the surface has a link through it."""
+
+
+class Surfaces(NamedTuple):
+    """The spheres as the kernels see them: ``radii`` (n,), the others (n, 3)."""
+
+    centres: np.ndarray
+    radii: np.ndarray
+    velocities: np.ndarray
+    spins: np.ndarray
+
+
+@inlined
+def surface_velocity(surfaces, s, rx, ry, rz):
+    """Velocity of sphere ``s`` at the offset (rx, ry, rz) from its centre: v + omega x r."""
+    velocity, spin = surfaces.velocities[s], surfaces.spins[s]
+    return (
+        velocity[0] + spin[1] * rz - spin[2] * ry,
+        velocity[1] + spin[2] * rx - spin[0] * rz,
+        velocity[2] + spin[0] * ry - spin[1] * rx,
+    )
 
 
 @njit(forceinline=True)

@@ -9,9 +9,9 @@ whatever the fluid's step, and the moment of contact falls where it falls.
 
 Film and contact change the velocity within less time than sound needs to pass the sphere on the lattice. In
 the liquid that is no time at all: they act on sphere and added mass m_a together. So with a
-:class:`lbm.spheres.contact.DryRebound` they do here, and since the lattice's fluid asks the sphere for the impulse
-m_a (change of velocity) only afterwards, that impulse is kept as a debt and the fluid's force is not passed on
-to the sphere until it is paid. The principle has no time or number of steps to choose.
+:class:`lbm.spheres.spheres.contact.DryRebound` they do here, and since the lattice's fluid asks the sphere for the
+impulse m_a (change of velocity) only afterwards, that impulse is kept as a debt and the fluid's force is not
+passed on to the sphere until it is paid. The principle has no time or number of steps to choose.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class FilmMotion(Motion):
 
 
 class DryMotion(FilmMotion):
-    """The motion of :class:`lbm.spheres.contact.DryRebound`.
+    """The motion of :class:`lbm.spheres.spheres.contact.DryRebound`.
 
     It also remembers the impulse ``owed``, which film and wall have still to pay to the fluid.
     """
@@ -148,7 +148,7 @@ class DryMotion(FilmMotion):
 
 
 class SoftMotion(FilmMotion):
-    """The motion of :class:`lbm.spheres.contact.SoftContact`.
+    """The motion of :class:`lbm.spheres.spheres.contact.SoftContact`.
 
     It also remembers ``touching``, the speed at the begin of a contact.
     """

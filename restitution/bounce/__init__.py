@@ -19,6 +19,7 @@ the wall does to the added mass, :mod:`~restitution.bounce.wake` what a rebound 
 is a rebound of its own, of a soft sphere, that one of the laws tabulates.
 """
 
+from restitution.bounce.agreement import distance_from_contact_d, release_of
 from restitution.bounce.closures import Closures, Release, terminal_speed
 from restitution.bounce.drive import Drive
 from restitution.bounce.model import Impact, IntegrationError, Trajectory, bounce
@@ -33,5 +34,7 @@ __all__ = [
     "Release",
     "Trajectory",
     "bounce",
+    "distance_from_contact_d",
+    "release_of",
     "terminal_speed",
 ]

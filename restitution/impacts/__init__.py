@@ -5,9 +5,13 @@ meant), :mod:`~restitution.impacts.find` (impacts with their errors), :mod:`~res
 and the times between contacts), :mod:`~restitution.impacts.shipped` (impacts of the shipped records).
 """
 
+from restitution.impacts.bounces import Bounces, filmed, modelled
 from restitution.impacts.find import Impacts, find_impacts
 
 __all__ = [
+    "Bounces",
     "Impacts",
+    "filmed",
     "find_impacts",
+    "modelled",
 ]

@@ -10,3 +10,21 @@ Whether a kept run (:mod:`~restitution.runs.kept`) still holds is the question o
 
 :mod:`~restitution.runs.point_particle` is the same case as a point particle.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from restitution.runs.resolved import ResolvedRun
+
+__all__ = ["ResolvedRun"]
+
+
+def __getattr__(name: str) -> object:
+    """What is handed on, loaded when it is first asked for: with it come the solver and its compiler."""
+    if name == "ResolvedRun":
+        from restitution.runs.resolved import ResolvedRun
+
+        return ResolvedRun
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -5,3 +5,16 @@ record), :mod:`.flight_map` (trajectories, interpolated), :mod:`.correlated_nois
 :mod:`.whole_trajectories` (the restitution of each bounce), :mod:`.doubts` (signs that the model is not that of
 the flight), :mod:`.fit` (the law); :mod:`.synthetic` makes records of known truth.
 """
+
+from restitution.calibration.trajectories.fit import Measured, TrajectoryFit, fit_law
+from restitution.calibration.trajectories.recordings import Recording, read_recordings
+from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory
+
+__all__ = [
+    "Measured",
+    "Recording",
+    "TrajectoryFit",
+    "WholeTrajectory",
+    "fit_law",
+    "read_recordings",
+]

@@ -222,7 +222,7 @@ def test_a_checkpoint_of_other_bodies_is_refused(tmp_path):
             _with(*bodies).restore(tmp_path / "state.h5")
 
 
-class _Describes:
+class _Describes(Body):
     def __init__(self, found):
         self.found = found
 
@@ -233,7 +233,17 @@ class _Describes:
         return self.found
 
 
-def test_a_body_need_not_be_derived_from_the_protocol(tmp_path):
+class _Unfinished:
+    """Has a call and a description, as a body does, but nothing else of one."""
+
+    def __call__(self, *given):
+        pass
+
+    def describe(self):
+        return {}
+
+
+def test_a_body_without_a_state_needs_a_call_and_a_description_only(tmp_path):
     flow = _with(_Describes({"a": 1}))
     flow.run(3)
     flow.save(tmp_path / "state.h5")
@@ -242,7 +252,10 @@ def test_a_body_need_not_be_derived_from_the_protocol(tmp_path):
         _with(_Describes({"a": 2})).restore(tmp_path / "state.h5")
 
 
-@pytest.mark.parametrize("body", [3, None, print, Marker, _Describes({"a": np.zeros(3)}), _Describes(5)])
+@pytest.mark.parametrize(
+    "body",
+    [3, None, print, Marker, _Unfinished(), _Describes({"a": np.zeros(3)}), _Describes(5)],
+)
 def test_what_is_no_body_is_refused(body):
     flow = _with()
     with pytest.raises(InputError):

@@ -5,7 +5,8 @@ import h5py
 import numpy as np
 import pytest
 
-from lbm import InputError, NoSlip, OutputError, Rates, Simulation
+from lbm import Flow, InputError, NoSlip, OutputError, Rates, Simulation
+from lbm.observers import Sums
 from lbm.spheres import DryRebound, Film, FilmRebound, SoftContact, Sphere, Spheres
 
 RATES = Rates.two_relaxation_times(0.02)
@@ -162,6 +163,28 @@ def test_an_impossible_state_is_refused(tmp_path, name, value):
         file.attrs[name] = value
     with pytest.raises(InputError, match="damaged"):
         flow.restore(tmp_path / "c.h5")
+
+
+def test_what_was_saved_can_be_looked_at_without_a_simulation(tmp_path):
+    whole = _flow()
+    whole.run(7)
+    whole.save(tmp_path / "state.h5")
+    faces = {"x": "no-slip", "z-": "no-slip", "z+": NoSlip((0.03, 0, 0))}
+    flow = Flow(SHAPE, RATES, faces=faces, force=(1e-5, 0, 0))
+    flow.restore(tmp_path / "state.h5")
+    sums = Sums(1)
+    sums(flow)
+    assert (flow.steps, sums.steps) == (7, [7])
+    assert (flow.velocity == whole.velocity).all()
+
+
+def test_a_law_need_not_be_defined_everywhere(tmp_path):
+    """A list of measured rebounds ends; a description must not."""
+    measured = FilmRebound(lambda speed, count: (0.7, 0.6)[count] * speed / (speed > 1e-3), 0.5, 1e-4)
+    flow = Simulation((16, 16, 20), RATES, faces={"z": "no-slip"})
+    flow.add(Spheres([Sphere(3.0, 8.0, (8.0, 8.0, 9.0))], contact=measured))
+    flow.save(tmp_path / "state.h5")
+    flow.restore(tmp_path / "state.h5")
 
 
 # Everything that decides the motion of spheres

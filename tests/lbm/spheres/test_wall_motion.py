@@ -89,6 +89,24 @@ def test_a_motion_goes_on_from_its_numbers(contact, stopped):
 
 
 @pytest.mark.parametrize(
+    "make",
+    [
+        lambda: SoftContact(lambda *given: 0.0, 0.0),
+        lambda: SoftContact.linear(0.9, MASS, -1.0),
+        lambda: SoftContact.hertz(0.9, 0.0, 20.0),
+        lambda: DryRebound(1.1, 0.0),
+        lambda: DryRebound(0.9, -1.0),
+        lambda: FilmRebound(lambda speed, count: speed, 0.0, 0.0),
+        lambda: FilmRebound(lambda speed, count: speed, 0.5, -1e-4),
+        lambda: Film(0.5, 0.6),
+    ],
+)
+def test_contacts_and_films_out_of_range_are_refused(make):
+    with pytest.raises(InputError):
+        make()
+
+
+@pytest.mark.parametrize(
     ("film", "contact", "fraction"),
     [
         (FILM, FilmRebound(lambda speed, count: speed, 0.5, 0.0), FRACTION),
