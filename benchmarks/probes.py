@@ -29,7 +29,10 @@ from restitution.runs.validity.program import program_hash
 
 ROOT = Path(__file__).parent.parent
 KEPT = Path(__file__).parent / "probes.json"
-_GIVE = "import json, sys; from restitution.runs import physics; json.dump(physics.probe_numbers(), sys.stdout)"
+_GIVE = """import json, sys
+from restitution.runs.validity import physics
+json.dump(physics.probe_numbers(), sys.stdout)
+"""
 
 
 @dataclass(frozen=True)
