@@ -1,4 +1,4 @@
-"""What is exported: a law of the registry or a fitted one, at values of its parameters, with all that goes with it.
+"""What is exported: a law of the registry or a fitted one, at values of its parameters, and what goes with it.
 
 Whatever the target, its numbers come from here: ``expression`` is the law's single formula, ``value`` what this
 package computes by it, held to what e_eff can be:
@@ -145,7 +145,6 @@ def law_closure(law: Law) -> Closure:
         )
         for f in law.parameter_fields()
     )
-    rebound = isinstance(law, ReboundLaw)
     return Closure(
         name=law.name,
         title=law.title,
@@ -154,8 +153,8 @@ def law_closure(law: Law) -> Closure:
         meaning=(law.__doc__ or "").strip().splitlines()[0],
         variables=law.variables,
         constants=constants,
-        convention=law.convention if rebound else None,
-        speed=law.speed if rebound else Speed.UNSTATED,
+        convention=law.convention if isinstance(law, ReboundLaw) else None,
+        speed=law.speed if isinstance(law, ReboundLaw) else Speed.UNSTATED,
         validity=law.validity,
         validity_source=law.validity_source,
         reference=law.reference,

@@ -20,8 +20,9 @@ Under the first rule the spring pulls before it lets go; codes that cut this ten
 deliver 0.55. :func:`typed` is what to type there. The second rule is Schwager & Poeschel's formula (2007), with
 pi - atan(2 zeta s/(1 - 2 zeta^2)) = 2 acos(zeta), s = sqrt(1 - zeta^2).
 
-Sources: Schwager & Poeschel, Granular Matter 9, 465 (2007); Tsuji, Tanaka & Ishida, Powder Technol. 71, 239 (1992);
-Antypov & Elliott, EPL 94, 50004 (2011). The papers were not opened; the formulas follow from the equations above.
+Sources: Schwager & Poeschel, Granular Matter 9, 465 (2007); Tsuji, Tanaka & Ishida, Powder Technol. 71, 239
+(1992); Antypov & Elliott, EPL 94, 50004 (2011). The papers were not opened; the formulas follow from the equations
+above.
 """
 
 from __future__ import annotations
@@ -196,5 +197,9 @@ def dashpot(
             )
         unit = Dashpot(1.0, 2 * zeta, 1.0, end, spring)
         stiffness = mass * (unit.contact_time() / contact_time) ** 2
-    damping = zeta * math.sqrt(5 * mass * stiffness) if spring is Spring.HERTZ else 2 * zeta * math.sqrt(mass * stiffness)
+    damping = (
+        zeta * math.sqrt(5 * mass * stiffness)
+        if spring is Spring.HERTZ
+        else 2 * zeta * math.sqrt(mass * stiffness)
+    )
     return Dashpot(stiffness, damping, mass, end, spring)

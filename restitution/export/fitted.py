@@ -47,10 +47,10 @@ def _check_version(path: str | Path) -> None:
         return  # read_fit says what is wrong
     given = content.get("format") if isinstance(content, dict) else None
     kind, _, version = FORMAT.partition("/")
-    if isinstance(given, str) and given.startswith(f"{kind}/") and given[len(kind) + 1 :].isdigit():
-        if int(given[len(kind) + 1 :]) > int(version):
-            rule = f"is of a newer version of this package; this one reads {FORMAT}"
-            raise InputError(Defect(rule, file=str(path), field="format", value=given))
+    number = given.removeprefix(f"{kind}/") if isinstance(given, str) else ""
+    if number.isdigit() and int(number) > int(version):
+        rule = f"is of a newer version of this package; this one reads {FORMAT}"
+        raise InputError(Defect(rule, file=str(path), field="format", value=given))
 
 
 def _check_points(result: FitResult, path: str | Path) -> None:
@@ -74,9 +74,7 @@ def _check_points(result: FitResult, path: str | Path) -> None:
             raise InputError(Defect(rule, file=str(path)))
 
 
-def fit_closure(
-    path: str | Path, e_dry: float | None = None, levels: Mapping[str, str] | None = None
-) -> Closure:
+def fit_closure(path: str | Path, e_dry: float | None = None, levels: Mapping[str, str] | None = None) -> Closure:
     """The fitted law of a JSON file.
 
     Parameters

@@ -22,12 +22,115 @@ from restitution.stokes import convention
 Comparison = tuple[str, str, "str | float"]
 """Left side, operator and right side: a name or a number."""
 _TAKEN = frozenset(
-    "e y i n s dp pi nan inf int if do for in is or and not else end real double float return function module "
-    "class def del from import lambda let const var new this with while until repeat break case switch default "
-    "static inline void char short long signed unsigned struct union enum auto register goto extern volatile "
-    "restrict program use only result contains call merge sign max min abs exp log sqrt tanh pow fmax fmin math "
-    "local global begin true false nothing none try catch except raise pass yield async await elif as assert "
-    "wrong expected inputs values slopes self check row".split()
+    [
+        "e",
+        "y",
+        "i",
+        "n",
+        "s",
+        "dp",
+        "pi",
+        "nan",
+        "inf",
+        "int",
+        "if",
+        "do",
+        "for",
+        "in",
+        "is",
+        "or",
+        "and",
+        "not",
+        "else",
+        "end",
+        "real",
+        "double",
+        "float",
+        "return",
+        "function",
+        "module",
+        "class",
+        "def",
+        "del",
+        "from",
+        "import",
+        "lambda",
+        "let",
+        "const",
+        "var",
+        "new",
+        "this",
+        "with",
+        "while",
+        "until",
+        "repeat",
+        "break",
+        "case",
+        "switch",
+        "default",
+        "static",
+        "inline",
+        "void",
+        "char",
+        "short",
+        "long",
+        "signed",
+        "unsigned",
+        "struct",
+        "union",
+        "enum",
+        "auto",
+        "register",
+        "goto",
+        "extern",
+        "volatile",
+        "restrict",
+        "program",
+        "use",
+        "only",
+        "result",
+        "contains",
+        "call",
+        "merge",
+        "sign",
+        "max",
+        "min",
+        "abs",
+        "exp",
+        "log",
+        "sqrt",
+        "tanh",
+        "pow",
+        "fmax",
+        "fmin",
+        "math",
+        "local",
+        "global",
+        "begin",
+        "true",
+        "false",
+        "nothing",
+        "none",
+        "try",
+        "catch",
+        "except",
+        "raise",
+        "pass",
+        "yield",
+        "async",
+        "await",
+        "elif",
+        "as",
+        "assert",
+        "wrong",
+        "expected",
+        "inputs",
+        "values",
+        "slopes",
+        "self",
+        "check",
+        "row",
+    ]
 )
 
 
@@ -136,7 +239,11 @@ def _slope(closure: Closure, expression: Any, constants: list[Let]) -> Function:
     slope = expression.diff(x).xreplace(steps)
     limits: tuple = ()
     if closure.rebound:
-        limits = (Let("e", expression), When(("e", "<", 0.0), 0.0), When(("e", ">", _dry(closure, constants)), 0.0))
+        limits = (
+            Let("e", expression),
+            When(("e", "<", 0.0), 0.0),
+            When(("e", ">", _dry(closure, constants)), 0.0),
+        )
     body = (*_guards(closure), *constants, *limits, Give(slope))
     return Function(f"{closure.name}_slope", closure.variables, f"d/d{x} of {closure.name}", body)
 
@@ -199,4 +306,3 @@ def wall_stokes(key: str) -> Any:
     # Fractions such as 1/9 come back from the numbers, pi being cancelled to rounding.
     exact = sympy.nsimplify(sympy.expand(per_speed), rational=True, tolerance=1e-12)
     return sympy.factor(v * exact)
-

@@ -27,7 +27,7 @@ class CheckTable:
 
 
 def check_table(closure: Closure) -> CheckTable:
-    """Twelve points or more: across the range and beyond both its ends, for e_eff also where there is no impact."""
+    """Twelve points or more: across the range and beyond its ends, for e_eff also where there is no impact."""
     low, high = closure.validity
     low = low if low > 0 else min(_OPEN_LOW, high / 100)
     high = high if high < np.inf else _OPEN_HIGH * low

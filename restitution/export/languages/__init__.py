@@ -1,5 +1,5 @@
-"""The languages that a law is exported to as functions, one module each: :mod:`.c`, :mod:`.fortran`, :mod:`.python`,
-:mod:`.julia`, :mod:`.javascript`, :mod:`.octave`; :mod:`.language` is what they share.
+"""The languages that a law is exported to as functions, one module each: :mod:`.c`, :mod:`.fortran`,
+:mod:`.python`, :mod:`.julia`, :mod:`.javascript`, :mod:`.octave`; :mod:`.language` is what they share.
 """
 
 from __future__ import annotations

@@ -39,9 +39,13 @@ def _file(language: Language, source: Source) -> str:
     text += f"    int i, wrong = 0;\n    for (i = 0; i < {n}; i++) {{\n"
     for function, what in checked:
         call = ", ".join(f"inputs[i][{j}]" for j in range(width))
-        text += f"        if (!(fabs({function}({call}) - {what}[i]) <= {TOLERANCE!r} * fabs({what}[i]))) wrong++;\n"
+        text += (
+            f"        if (!(fabs({function}({call}) - {what}[i]) <= {TOLERANCE!r} * fabs({what}[i]))) wrong++;\n"
+        )
     text += "    }\n    return wrong;\n}\n"
-    text += f"\n#ifdef {upper}_MAIN\n#include <stdio.h>\nint main(void)\n{{\n    int wrong = {name}_self_check();\n"
+    text += (
+        f"\n#ifdef {upper}_MAIN\n#include <stdio.h>\nint main(void)\n{{\n    int wrong = {name}_self_check();\n"
+    )
     text += f'    printf("{name}: %d wrong\\n", wrong);\n    return wrong != 0;\n}}\n#endif\n\n#endif\n'
     return text
 

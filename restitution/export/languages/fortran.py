@@ -71,10 +71,13 @@ def _file(language: Language, source: Source) -> str:
     text += f"    wrong = 0\n    do i = 1, {n}\n"
     for function, what in checked:
         call = ", ".join(f"inputs({j + 1}, i)" for j in range(width))
-        text += f"      if (.not. abs({function}({call}) &\n          - {what}(i)) <= {_number(TOLERANCE)}*abs({what}(i))) &\n"
+        text += f"      if (.not. abs({function}({call}) &\n"
+        text += f"          - {what}(i)) <= {_number(TOLERANCE)}*abs({what}(i))) &\n"
         text += "        wrong = wrong + 1\n"
     text += f"    end do\n  end function {name}_self_check\n\nend module {name}_module\n"
-    text += f"\n#ifdef {name.upper()}_MAIN\nprogram main\n  use {name}_module\n  implicit none\n  integer :: wrong\n"
+    text += (
+        f"\n#ifdef {name.upper()}_MAIN\nprogram main\n  use {name}_module\n  implicit none\n  integer :: wrong\n"
+    )
     text += f"  wrong = {name}_self_check()\n  print '(a, i0, a)', '{name}: ', wrong, ' wrong'\n"
     return text + "  if (wrong /= 0) error stop 1\nend program main\n#endif\n"
 

@@ -32,7 +32,7 @@ def one_line(printed: str) -> str:
 
 @dataclass(frozen=True)
 class Language:
-    """One language. ``conjunction`` and ``negation`` join and turn comparisons, ``file`` makes the text of a file."""
+    """One language. ``conjunction`` and ``negation`` join and turn comparisons, ``file`` makes a file's text."""
 
     key: str
     title: str

@@ -24,9 +24,9 @@ def _file(language: Language, source: Source) -> str:
     inside = {f.name: f"{name}_value" if f.name == name else f.name for f in source.functions}
     text = f"function law = {name}()\n" + language.comments(source.heading)
     text += f"% Use: law = {name}(); law.value(...). Functions take numbers, not arrays.\n"
-    text += f"% Self-check: law.self_check() gives 0\n"
-    for f in inside.values():
-        text += f"  law.{f.removeprefix(f'{name}_')} = @{f};\n"
+    text += "% Self-check: law.self_check() gives 0\n"
+    for own in inside.values():
+        text += f"  law.{own.removeprefix(f'{name}_')} = @{own};\n"
     text += f"  law.self_check = @{name}_self_check;\nend\n"
     for f in source.functions:
         text += f"\n% {f.says}\nfunction y = {inside[f.name]}({', '.join(f.arguments)})\n{language.body(f)}end\n"
@@ -35,7 +35,9 @@ def _file(language: Language, source: Source) -> str:
     text += "".join(f"    {row}; ...\n" for row in language.rows(table, "", "", ", ")) + "  ];\n"
     checked = [(f"{name}_value", "values")] + [(f"{name}_slope", "slopes")] * source.derivative
     for _, what in checked:
-        text += f"  {what} = [ ...\n" + "".join(f"    {_number(x)}; ...\n" for x in getattr(table, what)) + "  ];\n"
+        text += (
+            f"  {what} = [ ...\n" + "".join(f"    {_number(x)}; ...\n" for x in getattr(table, what)) + "  ];\n"
+        )
     text += "  wrong = 0;\n  for i = 1:size(inputs, 1)\n"
     for function, what in checked:
         call = ", ".join(f"inputs(i, {j + 1})" for j in range(len(table.rows[0])))
@@ -47,7 +49,7 @@ def _file(language: Language, source: Source) -> str:
 OCTAVE = Language(
     key="octave",
     title="MATLAB, Octave",
-    version="MATLAB R2016b, Octave 6; not tried here",
+    version="MATLAB R2016b, Octave; tried with Octave 7.3",
     suffix=".m",
     comment="%",
     conjunction=" && ",

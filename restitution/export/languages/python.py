@@ -58,7 +58,8 @@ def _file(language: Language, source: Source) -> str:
     for _, what in checked:
         values = "".join(f"    {_number(x)},\n" for x in getattr(table, what))
         text += f"_{what.upper()} = (\n{values})\n"
-    text += '\n\ndef self_check():\n    """The number of wrong values; 0 where the file is as it was written."""\n    wrong = 0\n'
+    text += '\n\ndef self_check():\n    """The number of wrong values; 0 where the file is as it was written."""\n'
+    text += "    wrong = 0\n"
     for function, what in checked:
         text += f"    for given, expected in zip(_INPUTS, _{what.upper()}):\n"
         text += f"        wrong += not abs({function}(*given) - expected) <= {TOLERANCE!r} * abs(expected)\n"
