@@ -1,7 +1,8 @@
 """A fit as a closure: its parameters with intervals, the range of its data, and where it comes from.
 
 A fit file carries no signature, but it holds what its parameters make of every impact. Where these numbers do not
-agree any more the file was edited by hand, and nothing is exported from it.
+agree any more the file was edited by hand, and nothing is exported from it. That can be told only where all
+impacts have one ratio of Stokes numbers, not of fits to whole trajectories.
 """
 
 from __future__ import annotations
@@ -74,13 +75,12 @@ def _check_points(result: FitResult, path: str | Path) -> None:
             raise InputError(Defect(rule, file=str(path)))
 
 
-def fit_closure(path: str | Path, e_dry: float | None = None, levels: Mapping[str, str] | None = None) -> Closure:
+def fit_closure(path: str | Path, levels: Mapping[str, str] | None = None) -> Closure:
     """The fitted law of a JSON file.
 
     Parameters
     ----------
     path : what ``restitution fit --out`` wrote.
-    e_dry : sets the dry restitution where the fit did not estimate it; else it stays a variable.
     levels : which level of separate parameters, as ``{"material": "steel"}``.
     """
     result = read_unedited(path)
@@ -95,9 +95,6 @@ def fit_closure(path: str | Path, e_dry: float | None = None, levels: Mapping[st
         raise InputError(Defect(rule, field=missing[0]))
     names = [p.name for p in model.parameters]
     if "e_dry" in values:
-        names.append("e_dry")
-    elif e_dry is not None:
-        values["e_dry"] = e_dry
         names.append("e_dry")
     constants = tuple(_constant(result, name, values[name]) for name in names)
     law = {name: values[name] for name in names if name != "e_dry"}

@@ -15,7 +15,7 @@ from restitution.export.self_check import TOLERANCE, check_table
 from restitution.stokes import convention
 
 ROWS = 60
-"""Of a CSV; e_eff between two rows is linear to 0.002 across a range of a factor 100 in St."""
+"""Of a CSV; across a factor 100 in St a smooth law is linear between two rows to 0.001."""
 
 
 def csv_table(

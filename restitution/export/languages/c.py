@@ -29,7 +29,7 @@ def _file(language: Language, source: Source) -> str:
         text += f"\n/* {f.says} */\nstatic inline {kind} {f.name}({arguments})\n{{\n{language.body(f)}}}\n"
     n, width = len(table.rows), len(table.rows[0])
     checked = [(name, "values")] + [(f"{name}_slope", "slopes")] * source.derivative
-    text += f"\n/* The number of wrong values among {n} and more; 0 where the file is as it was written. */\n"
+    text += "\n/* The number of wrong values; 0 where the file is as it was written. */\n"
     text += f"static inline int {name}_self_check(void)\n{{\n"
     text += f"    static const double inputs[{n}][{width}] = {{\n"
     text += "".join(f"        {row},\n" for row in language.rows(table, "{", "}", ", ")) + "    };\n"

@@ -61,7 +61,7 @@ def _file(language: Language, source: Source) -> str:
     public = [f.name for f in source.functions] + [f"{name}_self_check"]
     text += "".join(f"  public :: {p}\n" for p in public) + "\ncontains\n"
     text += "".join("\n" + _function(language, f) for f in source.functions)
-    text += f"\n  ! The number of wrong values among {n} and more; 0 where the file is as it was written.\n"
+    text += "\n  ! The number of wrong values; 0 where the file is as it was written.\n"
     text += f"  function {name}_self_check() result(wrong)\n    integer :: wrong, i\n"
     text += f"    real(dp) :: inputs({width}, {n}), {', '.join(f'{what}({n})' for _, what in checked)}\n"
     flat = ", &\n      ".join(language.rows(table, "", "", ", "))

@@ -125,3 +125,14 @@ def test_edited_and_newer_files_are_refused(fits, tmp_path, edit, named):
     (tmp_path / "fit.json").write_text(json.dumps(fit))
     with pytest.raises(InputError, match=named):
         fit_closure(tmp_path / "fit.json")
+
+
+def test_rows_are_close_enough_to_interpolate_between():
+    from restitution import laws
+    from restitution.export import law_closure
+
+    closure = law_closure(laws.get("legendre_2005"))
+    rows = pd.read_csv(StringIO(csv_table(closure, GONDRET, bare=True)))
+    St = np.geomspace(10, 1000, 5000)
+    between = np.interp(St, rows["stokes"], rows["e_eff"])
+    np.testing.assert_allclose(between, 0.97 * np.exp(-35 / St), atol=1e-3)
