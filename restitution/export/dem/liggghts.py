@@ -88,6 +88,7 @@ def _refitted(impacts: Impacts, request: Request) -> str:
 
 def _step() -> list[str]:
     return [
+        "written for one atom type: other types take the same number for each pair of a kind",
         f"time step at most contact time/{STEPS_A_CONTACT}; youngsModulus and poissonsRatio are yours, e does not "
-        "depend on them"
+        "depend on them",
     ]

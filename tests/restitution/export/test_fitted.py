@@ -136,3 +136,19 @@ def test_rows_are_close_enough_to_interpolate_between():
     St = np.geomspace(10, 1000, 5000)
     between = np.interp(St, rows["stokes"], rows["e_eff"])
     np.testing.assert_allclose(between, 0.97 * np.exp(-35 / St), atol=1e-3)
+
+
+def test_separate_parameters_are_exported_one_level_at_a_time(tmp_path):
+    impacts = read(["gondret2002_st152", "li2012_drop3"], speed="contact")
+    plan = Plan(model_of("eq4_exponential"), separate={"K": "source"}, offsets=False)
+    result = result_of(estimate(plan, impacts))
+    (tmp_path / "fit.json").write_text(result.to_json())
+    by_level = {
+        p.name.partition("[")[2].rstrip("]"): p.value for p in result.parameters if p.name.startswith("K[")
+    }
+    assert len(by_level) == 2
+    for level, K in by_level.items():
+        closure = fit_closure(tmp_path / "fit.json", {"source": level})
+        assert closure.value(60.0, 0.97) == pytest.approx(0.97 * np.exp(-K * 1.97 / 60), rel=1e-12)
+    with pytest.raises(InputError, match="--of source="):
+        fit_closure(tmp_path / "fit.json")
