@@ -8,7 +8,19 @@ import warnings
 from collections.abc import Sequence
 
 from restitution import __version__
-from restitution.commands import bounce, compare, data, design, fit, impacts, laws, predict, report, simulate
+from restitution.commands import (
+    bounce,
+    compare,
+    data,
+    design,
+    export,
+    fit,
+    impacts,
+    laws,
+    predict,
+    report,
+    simulate,
+)
 from restitution.errors import InputError, OutOfRangeWarning
 
 
@@ -20,7 +32,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"restitution {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for module in (data, laws, impacts, fit, compare, predict, design, simulate, bounce, report):
+    for module in (data, laws, impacts, fit, compare, predict, design, export, simulate, bounce, report):
         module.add_parser(commands)
     return parser
 

@@ -1,0 +1,84 @@
+"""What the texts for DEM codes share: which impacts, the constant and its range, stiffness, time step."""
+
+from __future__ import annotations
+
+import textwrap
+from dataclasses import dataclass
+
+import numpy as np
+
+from restitution.errors import Defect, InputError
+from restitution.export.dem.constant import Constant, best_constant, constant_at
+from restitution.export.heading import WIDTH, heading
+from restitution.export.impacts import Impacts
+from restitution.export.tables import pair_lines
+
+OVERLAP = 0.01
+"""Greatest overlap of an undamped contact, in diameters, that the stiffness is chosen for."""
+STEPS_A_CONTACT = 50
+"""Time steps that a contact must last."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of a DEM target: for level 0 the impact ``speed`` in m/s, for 1 Stokes numbers of the law."""
+
+    level: int
+    speed: float | None
+    within: float
+    stokes: tuple[float, float]
+
+
+def constant_of(impacts: Impacts, request: Request) -> Constant:
+    """Level 0: e at the speed asked for. Level 1: the constant that is best over the range of Stokes numbers."""
+    if request.level == 1:
+        return best_constant(impacts, *request.stokes)
+    if request.speed is None:
+        raise InputError(Defect("level 0 takes e at one impact speed: --speed V, in m/s", field="--speed"))
+    return constant_at(impacts, request.speed, request.within)
+
+
+def check_level(request: Request, target: str, most: int) -> None:
+    """Refuse a level that a target has not."""
+    if not 0 <= request.level <= most:
+        raise InputError(Defect(f"{target} has levels 0 to {most}", field="--level", value=str(request.level)))
+
+
+def fastest(impacts: Impacts, request: Request) -> float:
+    """The greatest impact speed that a text is for, m/s."""
+    if request.level == 0 and request.speed is not None:
+        return request.speed
+    return request.stokes[1] / impacts.per_speed
+
+
+def stiffness_for(impacts: Impacts, speed: float) -> float:
+    """Of a linear spring, N/m: an impact at ``speed`` overlaps by :data:`OVERLAP` diameters."""
+    return impacts.mass * (speed / (OVERLAP * impacts.conditions.sphere.diameter)) ** 2
+
+
+def range_lines(impacts: Impacts, constant: Constant) -> list[str]:
+    """Where the constant holds, in Stokes numbers and speeds."""
+    low, high = constant.stokes
+    v_low, v_high = low / impacts.per_speed, high / impacts.per_speed
+    valid = impacts.closure.validity
+    lines = [
+        f"e_eff = {constant.e:.6g} holds within {constant.within:.3g} for {low:.4g} <= St <= {high:.4g} "
+        f"({impacts.closure.convention}), that is impact speeds of {v_low:.4g} to {v_high:.4g} m/s"
+    ]
+    if low < valid[0] or high > valid[1]:
+        lines.append(f"the law itself is stated for {valid[0]:g} <= St <= {valid[1]:g} only")
+    return lines
+
+
+def comments(impacts: Impacts, target: str, version: str, lines: list[str]) -> str:
+    """The heading of a text, and what is to be said of this target."""
+    said = [*heading(impacts.closure, target, version), *pair_lines(impacts.conditions)]
+    said.append(f"e_dry {impacts.e_dry:g}")
+    for line in lines:
+        said += textwrap.wrap(line, WIDTH, subsequent_indent="    ")
+    return "".join(f"# {line}\n" for line in said)
+
+
+def stokes_points(request: Request, n: int = 9) -> np.ndarray:
+    """Stokes numbers across the range, for tables."""
+    return np.geomspace(*request.stokes, n)

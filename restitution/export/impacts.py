@@ -1,0 +1,61 @@
+"""The impacts of one pair: a closure with fluid and sphere, so that e_eff follows from the impact speed alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.export.closure import Closure
+from restitution.stokes import convention
+
+
+@dataclass(frozen=True)
+class Impacts:
+    """e_eff of a sphere and a wall, or its partner, in a fluid."""
+
+    closure: Closure
+    conditions: Conditions
+    e_dry: float
+
+    @property
+    def per_speed(self) -> float:
+        """The law's Stokes number over the impact speed, s/m."""
+        return float(convention(self.closure.convention).per_speed(self.conditions))
+
+    @property
+    def mass(self) -> float:
+        """Reduced mass in kg: that of the sphere at a wall."""
+        sphere, partner = self.conditions.sphere, self.conditions.partner
+        return sphere.mass * partner.mass / (sphere.mass + partner.mass) if partner else sphere.mass
+
+    def stokes(self, speed: NDArray | float) -> NDArray:
+        """The law's Stokes number of impact speeds in m/s."""
+        return np.asarray(speed, float) * self.per_speed
+
+    def restitution(self, St: NDArray | float) -> NDArray:
+        """e_eff at Stokes numbers of the law."""
+        arguments = (St, self.e_dry) if "e_dry" in self.closure.variables else (St,)
+        return self.closure.value(*arguments)
+
+
+def impacts_of(closure: Closure, conditions: Conditions | None, e_dry: float | None, target: str) -> Impacts:
+    """The impacts of a target's pair; raises :class:`InputError` naming what is missing."""
+    if not closure.rebound:
+        rule = (
+            f"takes e_eff at impact; {closure.name} is a {closure.family} law. A film force beside an e_eff would "
+            "count the viscous loss twice"
+        )
+        raise InputError(Defect(rule, field="--to", value=target))
+    if conditions is None:
+        rule = "needs fluid and sphere: --fluid density=D,viscosity=MU --sphere diameter=D,density=RHO,e_dry=E"
+        raise InputError(Defect(rule, field="--to", value=target))
+    dry = next((x for x in (closure.e_dry, e_dry, conditions.sphere.e_dry) if x is not None), None)
+    if dry is None:
+        raise InputError(Defect("is needed: --e-dry 0.97, or --sphere ...,e_dry=0.97", field="e_dry"))
+    if not 0 < dry <= 1:
+        raise InputError(Defect("must lie above 0 and be at most 1", field="e_dry", value=f"{dry:g}"))
+    return Impacts(closure, conditions, dry)

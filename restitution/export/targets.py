@@ -1,0 +1,110 @@
+"""The targets by name: what each is, what it takes, and the text it gets."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.export.closure import Closure
+from restitution.export.dem import Request, lammps, lammps_drop_test, liggghts, yade
+from restitution.export.impacts import Impacts, impacts_of
+from restitution.export.languages import LANGUAGES, source_code
+from restitution.export.tables import csv_table, json_record
+
+_DROPS = 8
+"""Impact speeds of a drop test."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a user says beside law and target."""
+
+    derivative: bool = False
+    bare: bool = False
+    drop_test: bool = False
+    conditions: Conditions | None = None
+    e_dry: float | None = None
+    request: Request = field(default_factory=lambda: Request(0, None, 0.02, (20.0, 1000.0)))
+
+
+@dataclass(frozen=True)
+class Target:
+    """``takes``: which options it needs, in words. ``text`` makes the file's content."""
+
+    key: str
+    title: str
+    takes: str
+    text: Callable[[Closure, Options], str]
+
+
+def _language(key: str) -> Target:
+    language = LANGUAGES[key]
+    return Target(
+        key,
+        f"{language.title}: functions and a self-check; {language.version}",
+        "[--derivative]",
+        lambda closure, options: source_code(closure, key, options.derivative),
+    )
+
+
+def _dem(key: str, title: str, text: Callable[[Impacts, Request], str]) -> Target:
+    def make(closure: Closure, options: Options) -> str:
+        pair = impacts_of(closure, options.conditions, options.e_dry, key)
+        if not options.drop_test:
+            return text(pair, options.request)
+        if key != "lammps" or options.conditions.partner is not None:
+            raise InputError(Defect("is written for lammps and a wall only", field="--drop-test"))
+        speeds = np.geomspace(*options.request.stokes, _DROPS) / pair.per_speed
+        return lammps_drop_test(pair, options.request, speeds)
+
+    return Target(key, title, "--fluid --sphere, --level 0 --speed V or --level 1 [--st-range]", make)
+
+
+TARGETS: dict[str, Target] = {
+    target.key: target
+    for target in (
+        *map(_language, LANGUAGES),
+        Target(
+            "csv",
+            "table of impact speed, St, e_eff and interval for one pair",
+            "--fluid --sphere [--bare]",
+            lambda closure, options: csv_table(closure, options.conditions, options.e_dry, options.bare),
+        ),
+        Target(
+            "json",
+            "all that is known of the law, and a table to check by",
+            "[--derivative]",
+            lambda closure, options: json_record(closure, options.derivative),
+        ),
+        _dem("lammps", "LAMMPS granular: constant e; level 1 without tension [--drop-test]", lammps),
+        _dem("liggghts", "LIGGGHTS, CFDEMcoupling: constant e; level 1 its viscous contact, refitted", liggghts),
+        _dem("yade", "YADE: constant e; level 1 its lubrication law, refitted", yade),
+    )
+}
+RESOLVE_THE_FILM = {
+    "walberla": "waLBerla",
+    "lethe": "Lethe",
+    "ludwig": "Ludwig",
+    "liggghts-pfm": "LIGGGHTS-PFM's hertz/lubricated",
+}
+"""Codes with a lubrication film of their own, which want e_dry."""
+
+
+def target(key: str) -> Target:
+    """The target of that name; raises :class:`InputError` naming the known ones, or why there is none."""
+    if key in TARGETS:
+        return TARGETS[key]
+    if key in RESOLVE_THE_FILM:
+        rule = (
+            f"{RESOLVE_THE_FILM[key]} has a lubrication film of its own: an e_eff beside it would count the "
+            "viscous loss twice. It takes e_dry and a least gap: 'restitution laws list --family film'"
+        )
+        raise InputError(Defect(rule, field="--to", value=key))
+    near = difflib.get_close_matches(key, TARGETS, n=1)
+    hint = f"did you mean {near[0]}? " if near else ""
+    raise InputError(Defect(f"is no target; {hint}known: {', '.join(TARGETS)}", field="--to", value=key))
