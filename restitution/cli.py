@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from restitution import __version__
 from restitution.commands import bounce, compare, data, design, fit, impacts, laws, predict, report, simulate
-from restitution.errors import InputError, OutOfRangeWarning
+from restitution.errors import InputError, OutOfRangeWarning, by_cause
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -41,7 +41,7 @@ def _run(args: argparse.Namespace) -> int:
             sys.stdout.flush()
         return status
     except InputError as error:
-        for defect in error.defects:
+        for defect in by_cause(error.defects):
             print(f"error: {defect}", file=sys.stderr)  # noqa: T201
         return 2
     except BrokenPipeError:

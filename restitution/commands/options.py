@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -100,6 +100,39 @@ def assignment(text: str) -> tuple[str, float]:
         return name, float(value)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
+
+
+def amount(text: str) -> tuple[str, float | str]:
+    """``NAME=NUMBER``, or ``NAME=NUMBER UNIT`` for what knows its unit, as an argument type."""
+    name, value = pair(text)
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, value
+
+
+def numbers_in(unit: str) -> Callable[[str], list[float]]:
+    """The argument type of positive numbers separated by commas, in ``unit`` or with a unit of their own."""
+
+    def numbers(text: str) -> list[float]:
+        from restitution.units import UnitError, in_si
+
+        try:
+            parsed = [_plain_or_in_si(part, unit, in_si) for part in text.split(",")]
+        except UnitError as error:
+            raise argparse.ArgumentTypeError(f"{text!r}: {error}") from None
+        if not all(0 < x < float("inf") for x in parsed):
+            raise argparse.ArgumentTypeError(f"{text!r} must be positive and finite")
+        return parsed
+
+    return numbers
+
+
+def _plain_or_in_si(part: str, unit: str, in_si: Callable[[str, str], float]) -> float:
+    try:
+        return float(part)
+    except ValueError:
+        return in_si(part, unit)
 
 
 def check_output(option: str, out: str | None, inputs: Iterable[str] = ()) -> None:

@@ -112,7 +112,8 @@ def _placed(cells: list[str], width: int, filled: list[int]) -> dict[int, str] |
         named.pop()
     if len(named) == len(filled) and filled:
         return dict(zip(filled, named, strict=True))
-    return dict(enumerate(named)) if len(named) > 1 and set(filled) <= set(range(len(named))) else None
+    enough = 1 < len(named) <= width and set(filled) <= set(range(len(named)))
+    return dict(enumerate(named)) if enough else None
 
 
 def _are_words(placed: dict[int, str]) -> bool:

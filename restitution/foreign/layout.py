@@ -85,6 +85,7 @@ def _all_vectors(lines: Sequence[tuple[int, str]]) -> bool:
 
 
 def _separator(lines: Sequence[str]) -> str:
+    lines = lines[len(lines) // 2 :]  # the head of a file is cut in other ways than its body
     best, best_score = ",", (0.0, 0)
     for separator in SEPARATORS:
         try:
@@ -95,7 +96,8 @@ def _separator(lines: Sequence[str]) -> str:
         cells = [cell for row in rows if len(row) == width for cell in row if cell]
         if width < 2 or share < _SAME_WIDTH or not cells:
             continue
-        score = (round(sum(map(is_number, cells)) / len(cells), 2), separator != " ")
+        numbers = sum(is_number(cell) or has_thousands(cell) for cell in cells)
+        score = (round(numbers / len(cells), 2), separator != " ")
         if score > best_score:
             best, best_score = separator, score
     return best

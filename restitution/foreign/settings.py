@@ -26,9 +26,9 @@ class Settings(Record):
     """Keys of a settings file; what is not given is as the file of the track says it.
 
     ``time``, ``position``, ``velocity``: names of the columns. ``time_unit``: "ms", "frame", "sqrt(d/g)";
-    ``unit``: "mm", "px", "0.3 mm", "d". ``frames_per_second`` and ``pixel`` say what a frame and a pixel are. ``direction``:
-    "up" where positions and velocities grow away from the wall. ``wall``: where the wall is, in the unit of the
-    positions, or "rest": where the sphere comes to rest. ``point``: whose position it is.
+    ``unit``: "mm", "px", "0.3 mm", "d". ``frames_per_second`` and ``pixel`` say what a frame and a pixel are.
+    ``direction``: "up" where positions and velocities grow away from the wall. ``wall``: where the wall is, in the
+    unit of the positions, or "rest": where the sphere comes to rest. ``point``: whose position it is.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, coerce_numbers_to_str=False)
