@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> None:
     )
     table = impacts.table()
     if args.out:
-        write_whole(args.out, table_text(table))
+        write_whole(args.out, table_text(table.assign(time_s=_times(table))))
     if said.reading:
         show(f"read: {said.reading}")
     _show(table, impacts.sigma, "m" if track.quantity == "gap" else "m/s")
@@ -140,6 +140,16 @@ def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str, _Said]:
     return found.track(args.sigma), conditions, "measured", _Said(found.reading, found.notes)
 
 
+_LATE = 1e2
+"""Times in s from which six digits no longer tell impacts apart, as those of a computer's clock."""
+
+
+def _times(table: pd.DataFrame) -> pd.Series:
+    """The times to be written: of late ones all digits down to a microsecond."""
+    late = not table.empty and table["time_s"].abs().max() >= _LATE
+    return table["time_s"].map("{:.6f}".format) if late else table["time_s"]
+
+
 def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
     """Print the impacts, one line each."""
     if table.empty:
@@ -149,14 +159,14 @@ def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
     def with_error(value: float, error: float, digits: int) -> str:
         return "" if math.isnan(value) else f"{value:.{digits}f} +- {error:.{digits}f}"
 
-    rows = []
+    rows, short = [], table["time_s"].abs().max() < _LATE
     for r in table.itertuples():
         resolved = r.outcome == "rebound"
         v_in = with_error(r.impact_speed_m_s, r.impact_speed_sigma_m_s, 4)
         v_out = with_error(r.rebound_speed_m_s, r.rebound_speed_sigma_m_s, 4)
         e = with_error(r.e_eff, r.e_eff_sigma, 3) if resolved else f"< {r.e_eff_upper:.3f}"
         St = with_error(r.stokes, r.stokes_sigma, 1)
-        rows.append((str(r.impact), f"{r.time_s:.5g}", v_in, v_out, St, e, r.note))
+        rows.append((str(r.impact), f"{r.time_s:.5g}" if short else f"{r.time_s:.4f}", v_in, v_out, St, e, r.note))
     first = table.iloc[0]
     show(f"speed: {first.speed_definition}, Stokes number: {first.stokes_convention}, noise: {sigma:.2g} {unit}")
     headings = ("impact", "time_s", "impact speed m/s", "rebound speed m/s", "St", "e_eff", "note")

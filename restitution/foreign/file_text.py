@@ -15,6 +15,9 @@ _BINARY = {
 }
 
 
+_MARKUP = {"{": "JSON", "<": "XML"}
+
+
 def read_lines(path: str | Path) -> list[str]:
     """The lines of a file without their ends; raises :class:`InputError` where it has no text."""
     file = str(path)
@@ -32,6 +35,8 @@ def read_lines(path: str | Path) -> list[str]:
     if not data.removeprefix(codecs.BOM_UTF8).strip():
         raise InputError(Defect("is empty", file=file))
     text = _decoded(data, file)
+    if kind := _MARKUP.get(text.lstrip()[:1]):
+        raise InputError(Defect(f"is {kind}, no table; export the table as CSV", file=file))
     if "\0" in text:
         row = text[: text.index("\0")].count("\n") + 1
         raise InputError(Defect("has a NUL byte", file=file, row=row))

@@ -51,6 +51,8 @@ def heading_of(layout: Layout) -> Heading:
     units: dict[int, str] = {}
     for at in range(len(above) - 1, -1, -1):
         line, cells = above[at]
+        if layout.vectors:
+            cells = next(iter(_vector_names(layout.lines[line - 1], layout)), cells)
         placed = _placed(cells, width, filled)
         if placed is None or not _are_words(placed):
             continue
@@ -60,9 +62,11 @@ def heading_of(layout: Layout) -> Heading:
         known = next((j for j in range(at) if program_of(above[j][1]) and _placed(above[j][1], width, filled)), at)
         line, placed = above[known][0], _placed(above[known][1], width, filled) or placed
         heading.line, heading.names = line, _with_tracks(placed, [cells for _, cells in above[:known]])
+        if not units:  # rows below the names that are no data are for the strict reader to name
+            heading.first_row = at + 1
         break
     else:
-        _from_comments(heading, layout, width, filled, data[0].line if data else len(layout.lines) + 1)
+        units = _from_comments(heading, layout, width, filled, data[0].line if data else len(layout.lines) + 1)
     if heading.line is None and above:
         _refuse(layout, above[-1], width)
     heading.names = {i: name for i, name in heading.names.items() if name or i in filled}
@@ -72,10 +76,19 @@ def heading_of(layout: Layout) -> Heading:
 
 def unit_in(name: str) -> str | None:
     """The unit that the name of a column ends with: "t (s)", "gap [mm]", "y / mm", "y_mm", "gap/d"."""
+    return _apart(name)[1]
+
+
+def without_unit(name: str) -> str:
+    """The name of a column without the unit that it ends with."""
+    return _apart(name)[0]
+
+
+def _apart(name: str) -> tuple[str, str | None]:
     for pattern in (_BRACKETS, _SLASH, _SUFFIX):
         if (match := pattern.fullmatch(name)) and _is_unit(match["unit"]):
-            return _bare(match["unit"])
-    return None
+            return match["name"], _bare(match["unit"])
+    return name, None
 
 
 def _first_data(layout: Layout) -> int:
@@ -84,7 +97,8 @@ def _first_data(layout: Layout) -> int:
     for at, row in enumerate(layout.rows):
         cells = [row.cells[i] for i in numeric if i < len(row.cells)]
         numbers = sum(map(is_number, cells))
-        if numbers and 2 * numbers >= sum(1 for cell in cells if not is_lost(cell)) and len(row.cells) > 1:
+        filled = sum(1 for cell in cells if not is_lost(cell))
+        if numbers and 2 * numbers > filled and len(row.cells) > 1:
             return at
     return len(layout.rows)
 
@@ -121,15 +135,32 @@ def _are_words(placed: dict[int, str]) -> bool:
     return len(texts) > 0 and sum(map(is_number, texts)) < 0.5 * len(texts)
 
 
-def _from_comments(heading: Heading, layout: Layout, width: int, filled: list[int], before: int) -> None:
-    """Names in the last comment above the data that has one for each column, however that line is separated."""
+def _from_comments(heading: Heading, layout: Layout, width: int, filled: list[int], before: int) -> dict[int, str]:
+    """Names in the last comment above the data that has one for each column, however that line is separated.
+
+    Returns the units of a comment below them.
+    """
+    units: dict[int, str] = {}
     for line, text in reversed([c for c in layout.comments if c[0] < before]):
-        for cells in _cuts(text, layout):
-            for named in (cells, ["#", *cells]):
-                placed = _placed(named, width, filled)
-                if placed is not None and _are_words(placed) and all(placed.get(i) for i in filled):
-                    heading.names, heading.line, heading.commented = placed, line, True
-                    return
+        placed = _names_in(text, layout, width, filled)
+        if placed is None:
+            continue
+        if not units and all(_is_unit(name) for name in placed.values()):
+            units = {i: _bare(name) for i, name in placed.items()}
+            continue
+        heading.names, heading.line, heading.commented = placed, line, True
+        return units
+    return {}
+
+
+def _names_in(text: str, layout: Layout, width: int, filled: list[int]) -> dict[int, str] | None:
+    """The names in a comment by column; its sign may be the first of them. None if it has none."""
+    for cells in _cuts(text, layout):
+        for named in (cells, ["#", *cells]):
+            placed = _placed(named, width, filled)
+            if placed is not None and _are_words(placed) and all(placed.get(i) for i in filled):
+                return placed
+    return None
 
 
 def _cuts(text: str, layout: Layout) -> list[list[str]]:
@@ -138,7 +169,8 @@ def _cuts(text: str, layout: Layout) -> list[list[str]]:
         return _vector_names(text, layout)
     together = re.sub(r"\s+([(\[])", r"\1", text)
     ways = [layout.separator, *(s for s in SEPARATORS if s != layout.separator)]
-    return [cells for separator in ways for line in (text, together) if len(cells := split(line, separator)) > 1]
+    cuts = [split(line, separator) for separator in ways for line in (text, together)]
+    return [cells for cells in cuts if len(cells) > 1 and not cells[0].endswith((",", ";"))]
 
 
 def _vector_names(text: str, layout: Layout) -> list[list[str]]:
@@ -146,6 +178,7 @@ def _vector_names(text: str, layout: Layout) -> list[list[str]]:
     groups = re.findall(r"\([^()]*\)|[^\s()]+", next(line for line in reversed(layout.lines) if line.strip()))
     sizes = [len(group.strip("()").split()) for group in groups]
     words = re.findall(r"\([^()]*\)|[^\s()]+", text)
+    words = ["Time", *words[1:]] if words[:1] == ["Probe"] else words
     if len(words) != len(sizes):
         return []
     names: list[str] = []

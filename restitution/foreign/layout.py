@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from restitution.errors import Defect, InputError
 from restitution.foreign.number_text import Decimal, decimal_of, has_thousands, is_lost, is_number
 
-SEPARATORS = {"\t": "tabs", ";": "semicolons", ",": "commas", " ": "spaces"}
+SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "spaces"}
 COMMENTS = ("#", "%", "//")
 _SAMPLE = 200
 """Lines of the body that are tried."""

@@ -19,6 +19,8 @@ class Program:
     recognises: Callable[[set[str]], bool]
     """Told by the names of the columns, in lower case."""
     time: str | None = None
+    clock: str | None = None
+    """A better time than ``time``, where the file states a unit of it other than frames."""
     position: str | None = None
     particle: str | None = None
     units: dict[str, str] = field(default_factory=dict)
@@ -34,7 +36,7 @@ class Program:
 TRACKMATE = Program(
     "TrackMate",
     lambda names: {"position_x", "position_y", "frame"} <= names,
-    time="frame", position="position_y", particle="track_id",
+    time="frame", clock="position_t", position="position_y", particle="track_id",
     units={"frame": "frame", "position_x": "px", "position_y": "px", "position_z": "px"},
     down=True, centre=True,
 )  # fmt: skip
@@ -54,7 +56,10 @@ DEEPLABCUT = Program(
 )  # fmt: skip
 KINOVEA = Program(
     "Kinovea",
-    lambda names: "time" in names and any(re.fullmatch(r".+/\d+/[xy]", name) for name in names),
+    lambda names: (
+        any(re.fullmatch(r"time( [(\[]\w+[)\]])?", name) for name in names)
+        and any(re.fullmatch(r".+/\d+/[xy]", name) for name in names)
+    ),
     time="time", position="y", units={"time": "ms"},
 )  # fmt: skip
 KINOVEA_TEXT = Program(

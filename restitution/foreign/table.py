@@ -9,7 +9,7 @@ from pathlib import Path
 from restitution.errors import Defect, InputError
 from restitution.foreign import blocks, programs
 from restitution.foreign.file_text import read_lines
-from restitution.foreign.heading import Heading, data_rows, heading_of
+from restitution.foreign.heading import Heading, data_rows, heading_of, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain
 from restitution.foreign.programs import Program
@@ -38,16 +38,17 @@ class ForeignTable:
         return CsvText(self.file, self.header, self.rows)
 
     def column(self, name: str) -> str | None:
-        """The column of that name, in whatever case, or of that name of the only track; None if none is."""
+        """The column of that name, in whatever case, of the only track, or of that number; None if none is."""
         lower = name.lower()
         for fits in (
             [own for own in self.header if own == name],
             [own for own in self.header if own.lower() == lower],
-            [own for own in self.header if own.lower().rpartition("/")[2] == lower],
+            [own for own in self.header if without_unit(own).lower() == lower],
+            [own for own in self.header if without_unit(own).lower().rpartition("/")[2] == lower],
         ):
             if len(fits) == 1:
                 return fits[0]
-        return None
+        return self.header[int(name) - 1] if name.isdecimal() and 0 < int(name) <= len(self.header) else None
 
     @property
     def particle_column(self) -> str | None:
@@ -70,7 +71,9 @@ class ForeignTable:
             for _, cells in self.rows:
                 count[_bare(cells[k])] = count.get(_bare(cells[k]), 0) + 1
             return count
-        tracks = [name.rpartition("/")[0] for name in self.header if name.rpartition("/")[2].lower() in "xyz"]
+        tracks = [
+            name.rpartition("/")[0] for name in self.header if name.rpartition("/")[2].lower() in ("x", "y", "z")
+        ]
         return {track: len(self.rows) for track in dict.fromkeys(tracks) if track}
 
     def of_particle(self, particle: str | None) -> ForeignTable:

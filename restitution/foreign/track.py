@@ -23,6 +23,8 @@ Quantity = Literal["gap", "velocity"]
 COLUMNS: dict[Quantity, str] = {"gap": "gap_m", "velocity": "velocity_m_s"}
 """The project's own names of the value of a track."""
 _SCHEMAS: dict[Quantity, str] = {"gap": "trajectory", "velocity": "settling"}
+_MOST_NAMED = 30
+"""Columns that a message names."""
 SURE = 0.6
 """Likelihood below which a position counts as lost; the default of DeepLabCut."""
 
@@ -54,7 +56,7 @@ class ForeignTrack:
 def columns_of(table: ForeignTable, settings: Settings) -> Columns | None:
     """The columns of a track, by the settings, the project's own names, or the program's; None if it has none."""
     program = table.program
-    time = settings.time or _own(table, "time_s") or (program.time if program else None)
+    time = settings.time or _own(table, "time_s") or _clock(table) or (program.time if program else None)
     if time is None:
         return None
     if settings.velocity and settings.position:
@@ -68,6 +70,12 @@ def columns_of(table: ForeignTable, settings: Settings) -> Columns | None:
     if value is None:
         return None
     return Columns(_named(table, time), _named(table, value), quantity)  # type: ignore[arg-type]
+
+
+def _clock(table: ForeignTable) -> str | None:
+    """The program's column of times in seconds, if the file states their unit."""
+    own = table.column(table.program.clock) if table.program is not None and table.program.clock else None
+    return own if own is not None and table.units.get(own, "frame") != "frame" else None
 
 
 def _own(table: ForeignTable, name: str) -> str | None:
@@ -251,11 +259,12 @@ def what_is_needed(table: ForeignTable) -> Defect:
     """That the columns of a track are not known, with the option that names them, guessed from their names."""
     time = next((own for name in TIMES if (own := table.column(name))), None)
     value = next((own for name in POSITIONS if (own := table.column(name)) and own != time), None)
+    header = ", ".join(table.header[:_MOST_NAMED]) + (" ..." if len(table.header) > _MOST_NAMED else "")
     if not table.named:
-        columns = f"names no columns; they are {', '.join(table.header)}"
+        columns = f"names no columns; they are {header}"
         example = "--column time_s=1 --column gap_m=2"
     else:
-        columns = f"the header ({', '.join(table.header)}) does not tell which columns are time and position"
+        columns = f"the header ({header}) does not tell which columns are time and position"
         example = f"--column time_s={_quoted(time or 'NAME')} --column gap_m={_quoted(value or 'NAME')}"
     rule = (
         f"{columns}: {example} (or velocity_m_s=NAME), with --time-unit s and --unit m or what they are in, and "

@@ -92,7 +92,9 @@ def find_impacts(
             speeds = measure(contact, np.random.default_rng([seed, i]))
         except UnresolvedError as reason:
             frame = contact.approach[-1] if contact.approach else contact.rebound[0]
-            notes.append(f"impact {i + 1}, near t = {track.time_s[frame]:.4g} s: {reason}")
+            t = track.time_s[frame]
+            when = f"{t:.4g}" if abs(t) < 100 else f"{t:.4f}"  # a computer's clock needs all its digits
+            notes.append(f"impact {i + 1}, near t = {when} s: {reason}")
             continue
         rows.append({"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, stokes))
     return Impacts(rows, track.sigma, notes)

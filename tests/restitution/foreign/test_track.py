@@ -150,10 +150,25 @@ FILES = {
     "cells and steps": (
         lines(["step gap"], csv(np.arange(FRAMES), GAP / 0.3e-3, sign=" ")),
         {"time": "step", "position": "gap", "time_unit": "4 ms", "unit": "0.3mm"}),
+    "settings before the names": (
+        lines(["camera;A", "fps;250", "", "t;y"], csv(T, CENTRE, sign=";")), CENTRES),
+    "names and units in comments": (
+        lines(["# d 4.0", "# nu 5.0", "# t, y", "# [ms] [m]"], csv(1e3 * T, CENTRE, sign=" ")),
+        {"time": "t", "position": "y", "point": "centre"}),
+    "bars": (lines(["t|y"], csv(T, GAP, sign="|")), METRES),
     "distance fallen": (lines(["time_s,gap_m"], csv(T, GAP[0] - GAP)), {"direction": "down", "wall": "rest"}),
     "TrackMate": (trackmate(), IMAGE),
+    "TrackMate, calibrated": (
+        lines(["TRACK_ID,POSITION_X,POSITION_Y,POSITION_T,FRAME", "T,X,Y,T,Frame", ",(micron),(micron),(sec),"],
+              [f"0,3,{1e6 * y:.6f},{t:.9g},{i}" for i, (t, y) in enumerate(zip(T, 0.03 - CENTRE, strict=True))]),
+        {"wall": 30000.0}),
     "trackpy": (trackpy(), {**IMAGE, "particle": 0}),
     "DeepLabCut": (deeplabcut(), {**IMAGE, "particle": "ball", "point": "centre"}),
+    "DeepLabCut, several animals": (
+        lines(["scorer" + ",D" * 6, "individuals,a,a,a,b,b,b", "bodyparts" + ",ball" * 6,
+               "coords,x,y,likelihood,x,y,likelihood"],
+              [f"{i},1.0,{y:.6f},0.99,,," for i, y in enumerate(PIXELS)]),
+        {**IMAGE, "particle": "a/ball", "point": "centre"}),
     "Tracker": (lines(["mass_A", "t\tx\ty"], csv(T, 0 * T, 1e3 * CENTRE, sign="\t")),
                 {"unit": "mm", "point": "centre"}),
     "Tracker, two tracks": (tracker_two(), {"unit": "m", "point": "centre", "particle": "mass_A"}),
@@ -164,6 +179,10 @@ FILES = {
     "Kinovea, text": (kinovea_text(), {"unit": "cm", "point": "centre", "particle": "ball"}),
     "Kinovea, clock": (kinovea_clock(), {"unit": "cm", "point": "centre", "time_unit": "0.4s"}),
     "LAMMPS": (lammps(), {"position": "z", "time_unit": "1e-5 s", "unit": "m", "particle": 1}),
+    "OpenFOAM, a probe": (
+        lines(["# Probe 0 (0 0 0)", "#  Probe    0", "#  Time"],
+              [f"{t:.9g}   (0 0 {y:.9g})" for t, y in zip(T, CENTRE, strict=True)]),
+        {"position": "4", "unit": "m", "point": "centre"}),
     "OpenFOAM": (openfoam(), {"position": "position_z", "unit": "m", "point": "centre"}),
 }  # fmt: skip
 
