@@ -61,5 +61,5 @@ def infer_schema(path: str | Path, columns: Mapping[str, str] | None = None) -> 
     kinds = [datasets.schema(name) for name in datasets.schema_names()]
     known = "; ".join(f"{s.name} ({', '.join(s.required)})" for s in kinds)
     what = f"the header ({', '.join(header)}) does not tell which kind of table this is"
-    rule = f"{what}: name the kind or map its columns; known: {known}"
+    rule = f"{what}: name the kind or map its columns (--schema KIND, --column gap_m=NAME); known: {known}"
     raise InputError(Defect(rule, file=str(path), row=1))

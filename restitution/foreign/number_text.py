@@ -23,6 +23,8 @@ _LOST = {"", "na", "n/a", "#n/a", "null", "none", "-", "--", "nan", "+nan", "-na
 
 def plain(cell: str, decimal: Decimal = ".") -> str:
     """The cell as Python writes numbers; as it is where it is no number."""
+    if NUMBER.fullmatch(cell):
+        return cell  # most are
     text = cell.translate(_TYPOGRAPHIC).strip()
     text = _EXPONENT.sub(r"\1e\2", text) if _EXPONENT.fullmatch(text) else text
     if decimal == "," and _COMMA.fullmatch(text):
@@ -42,7 +44,7 @@ def is_lost(cell: str) -> bool:
 
 def has_thousands(cell: str) -> bool:
     """Whether a cell is a number with thousands separators, which are never guessed away."""
-    return bool(_THOUSANDS.fullmatch(cell.translate(_TYPOGRAPHIC).strip()))
+    return not NUMBER.fullmatch(cell) and bool(_THOUSANDS.fullmatch(cell.translate(_TYPOGRAPHIC).strip()))
 
 
 def decimal_of(cells: Iterable[str]) -> tuple[Decimal | None, str]:
