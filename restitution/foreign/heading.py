@@ -226,7 +226,9 @@ def _refuse(layout: Layout, last: tuple[int, list[str]], width: int) -> None:
     """One line for all rows whose width is not that of the names."""
     line, cells = last
     named = [cell for cell in cells if cell]
-    hint = "; is the decimal sign a comma?" if width == 2 * len(named) and layout.separator == "," else ""
+    hint = ""
+    if layout.separator == "," and width > len(named):
+        hint = "; is the decimal sign a comma?" if width == 2 * len(named) else "; commas within numbers?"
     rule = f"names {len(named)} columns where the rows below have {width} values{hint}"
     raise InputError(Defect(rule, file=layout.file, row=line))
 

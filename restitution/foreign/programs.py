@@ -67,7 +67,7 @@ KINOVEA_TEXT = Program(
 )  # fmt: skip
 TRACKER = Program(
     "Tracker",
-    lambda names: "t" in names and bool({"x", "y"} & {name.rpartition("/")[2] for name in names}),
+    lambda names: "t" in names and {"x", "y"} <= {name.rpartition("/")[2] for name in names},
     time="t", position="y", units={"t": "s"},
 )  # fmt: skip
 """Known besides by the line of the track's name above; see :func:`program_of`."""
@@ -99,7 +99,9 @@ def program_of(names: Sequence[str]) -> Program | None:
 
 
 def is_tracker(names: Sequence[str], titles: Sequence[Sequence[str]]) -> bool:
-    """Whether a line of nothing but names of tracks stands above ``t  x  y``, as Tracker writes."""
-    lower = {name.strip().lower() for name in names}
-    titled = any(1 <= sum(map(bool, cells)) < max(len(names), 2) for cells in titles)
-    return titled and TRACKER.recognises(lower)
+    """Whether a line of nothing but names of tracks, of one word each, stands above ``t  x  y``: Tracker's."""
+    if not titles:
+        return False
+    tracks = [cell for cell in titles[-1] if cell]
+    named = 1 <= len(tracks) < len(names) and not any(" " in track for track in tracks)
+    return named and TRACKER.recognises({name.strip().lower() for name in names})

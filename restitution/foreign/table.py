@@ -144,11 +144,11 @@ def _of_blocks(file: str, names: list[str], rows: list[Row], program: Program) -
 
 def _rows(rows: list[Row], columns: list[int], layout: Layout, file: str) -> list[tuple[int, list[str]]]:
     """The cells of the named columns; rows of another width are left for the strict reader to name."""
+    while rows and not any(rows[-1].cells):
+        rows = rows[:-1]
     result = []
     for row in rows:
         cells = row.cells
-        if not any(cells):
-            continue
         if len(cells) > layout.width and not any(cells[layout.width :]):
             cells = cells[: layout.width]
         if len(cells) == layout.width:

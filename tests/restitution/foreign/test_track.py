@@ -221,6 +221,19 @@ def test_lost_frames_are_left_out_with_one_note(tmp_path, empty):
     assert "12 to 14" in note  # lines of the file
 
 
+def test_empty_rows_are_lost_frames_within_the_record_and_nothing_after_it(tmp_path):
+    rows = csv(T, CENTRE, sign=";")
+    rows[7] = ";"
+    found = read(tmp_path, lines(["t;y"], [*rows, ";", ";"]), **CENTRES)
+    assert len(found.table) == FRAMES - 1
+    assert "row 9" in found.notes[0]
+
+
+def test_a_title_is_not_the_mark_of_a_program(tmp_path):
+    content = lines(["Experiment 4, oil", "t;x;y"], csv(T, T, CENTRE, sign=";"))
+    assert read(tmp_path, content, **CENTRES).reading.count("Tracker") == 0
+
+
 def test_unlikely_positions_of_a_pose_tracker_count_as_lost(tmp_path):
     content = deeplabcut().replace("0.999", "0.2", 3)
     assert len(read(tmp_path, content, **IMAGE, particle="ball", point="centre").table) == FRAMES - 3
