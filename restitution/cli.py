@@ -21,7 +21,7 @@ from restitution.commands import (
     report,
     simulate,
 )
-from restitution.errors import InputError, OutOfRangeWarning
+from restitution.errors import InputError, OutOfRangeWarning, by_cause
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -53,7 +53,7 @@ def _run(args: argparse.Namespace) -> int:
             sys.stdout.flush()
         return status
     except InputError as error:
-        for defect in error.defects:
+        for defect in by_cause(error.defects):
             print(f"error: {defect}", file=sys.stderr)  # noqa: T201
         return 2
     except BrokenPipeError:

@@ -1,4 +1,4 @@
-"""The conditions of an experiment or a run: fluid, sphere, wall, gravity, in SI.
+"""The conditions of an experiment or a run: fluid, sphere, wall, gravity, in SI; texts with units become SI here.
 
 One record serves measured data (``data/datapackage.json``), users' TOML files and, later, simulation cases.
 """
@@ -10,12 +10,21 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from restitution.errors import Defect, InputError
+from restitution.units import KINEMATIC, UnitError, in_si, measured, quantity
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
+
+
+Length = Annotated[Positive, measured("m")]
+Thickness = Annotated[NonNegative, measured("m")]
+Duration = Annotated[Positive, measured("s")]
+Velocity = Annotated[Positive, measured("m/s")]
+Density = Annotated[Positive, measured("kg/m3")]
+Acceleration = Annotated[Positive, measured("m/s2")]
 
 
 class Record(BaseModel):
@@ -25,10 +34,23 @@ class Record(BaseModel):
 
 
 class Fluid(Record):
-    """``density`` rho_f in kg/m3, dynamic ``viscosity`` mu in Pa s."""
+    """``density`` rho_f in kg/m3, dynamic ``viscosity`` mu in Pa s; of a kinematic one, "10.7 cSt", rho_f nu."""
 
-    density: Positive
-    viscosity: Positive
+    density: Density
+    viscosity: Annotated[Positive, measured("Pa s")]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_kinematic(cls, given: Any) -> Any:
+        """Mu = rho_f nu where the viscosity is given as nu, with its unit."""
+        if not (isinstance(given, dict) and isinstance(given.get("viscosity"), str)):
+            return given
+        try:
+            nu, density = quantity(given["viscosity"]), in_si(given.get("density"), "kg/m3")
+            kinematic = nu.dimension == KINEMATIC and isinstance(density, int | float)
+        except UnitError:
+            return given  # said of the field itself
+        return {**given, "viscosity": nu.value * density} if kinematic else given
 
 
 class Sphere(Record):
@@ -37,10 +59,10 @@ class Sphere(Record):
     ``e_dry`` and ``roughness`` are None where nobody states them.
     """
 
-    diameter: Positive
-    density: Positive
+    diameter: Length
+    density: Density
     e_dry: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
-    roughness: NonNegative | None = None
+    roughness: Thickness | None = None
 
     @property
     def radius(self) -> float:
@@ -54,15 +76,15 @@ class Sphere(Record):
 class Wall(Record):
     """What is known of the wall: ``roughness`` in m, ``material`` in words."""
 
-    roughness: NonNegative | None = None
+    roughness: Thickness | None = None
     material: str | None = None
 
 
 class QuotedImpact(Record):
     """The speed of the first impact, in m/s, for a record that begins after it."""
 
-    speed: Positive
-    speed_sigma: NonNegative = 0.0
+    speed: Velocity
+    speed_sigma: Annotated[NonNegative, measured("m/s")] = 0.0
     speed_definition: Literal["far", "contact", "window"] = "far"
 
 
@@ -74,7 +96,7 @@ class Conditions(Record):
     wall: Wall | None = None
     partner: Sphere | None = None
     impact: QuotedImpact | None = None
-    gravity: Positive = 9.81
+    gravity: Acceleration = 9.81
     source: str | None = None
 
     @property
@@ -124,7 +146,8 @@ def read_conditions(path: str | Path) -> Conditions:
     Parameters
     ----------
     path : a file with tables ``[fluid]`` (density in kg/m3, viscosity in Pa s) and ``[sphere]`` (diameter in m,
-        density, ``e_dry``), and ``[wall]``, ``[partner]``, ``gravity`` where they matter.
+        density, ``e_dry``), and ``[wall]``, ``[partner]``, ``gravity`` where they matter; or texts with a unit, as
+        in ``viscosity = "10 mPa s"``.
 
     Raises
     ------

@@ -6,7 +6,9 @@ into one line a defect and exit status 2. Any other exception is a defect of thi
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+import re
+from collections.abc import Iterable
+from dataclasses import KW_ONLY, dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,21 @@ class Defect:
         ]
         subject = " ".join(w for w in what if w)
         return ": ".join(part for part in (place, subject, self.rule) if part)
+
+
+def by_cause(defects: Iterable[Defect]) -> list[Defect]:
+    """One defect a cause: of those that differ by row and value alone, the first, with how many rows have it."""
+    causes: dict[tuple, list[Defect]] = {}
+    for number, defect in enumerate(defects):
+        own = number if defect.row is None else None
+        key = (defect.file, defect.field, re.sub(r"\d+(\.\d+)?", "#", defect.rule), own)
+        causes.setdefault(key, []).append(defect)
+    return [
+        group[0]
+        if len(group) == 1
+        else replace(group[0], rule=f"{group[0].rule} (and {len(group) - 1} more rows, the last {group[-1].row})")
+        for group in causes.values()
+    ]
 
 
 class InputError(ValueError):

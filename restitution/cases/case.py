@@ -2,9 +2,9 @@
 
 One TOML file serves the resolved solver (``restitution simulate``) and the point-particle model, which takes no
 ``[numerics]``. Fluid, sphere, wall and gravity come from a shipped ``record`` where one is named; keys given
-beside it replace its own. Lengths are in m but where a key says otherwise: ``_d`` diameters, ``_cells``,
-``_steps``. Files are read by :mod:`restitution.cases.reading`; what cannot be run is found by
-:mod:`restitution.cases.rules`.
+beside it replace its own. Numbers are in SI but where a key says otherwise: ``_d`` diameters, ``_cells``,
+``_steps``; a text may have another unit, as in ``diameter = "3 mm"``. Files are read by
+:mod:`restitution.cases.reading`; what cannot be run is found by :mod:`restitution.cases.rules`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,20 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from restitution.conditions import Conditions, Fluid, NonNegative, Positive, Record, Sphere, Wall
+from restitution.conditions import (
+    Acceleration,
+    Conditions,
+    Duration,
+    Fluid,
+    Length,
+    NonNegative,
+    Positive,
+    Record,
+    Sphere,
+    Velocity,
+    Wall,
+)
+from restitution.units import measured
 
 Restitution = Annotated[float, Field(ge=0, le=1, strict=True)]
 
@@ -28,9 +41,9 @@ class Release(Record):
 
     kind: Literal["rest", "drive"]
     gap_d: Positive
-    speed: Positive | None = None
-    ramp: Positive | None = None
-    along: NonNegative = 0.0
+    speed: Velocity | None = None
+    ramp: Duration | None = None
+    along: Annotated[NonNegative, measured("m/s")] = 0.0
     free_below_d: Positive = 0.5
 
 
@@ -43,7 +56,7 @@ class Numerics(Record):
 
     cells_per_diameter: Positive
     lattice_speed: Positive = 0.05
-    reference_speed: Positive | None = None
+    reference_speed: Velocity | None = None
     width_d: Positive = 8.0
     height_d: Positive = 13.0
     sides: Literal["periodic", "no-slip", "free-slip"] = "periodic"
@@ -67,8 +80,8 @@ class FilmModel(Record):
 
     form: FilmForm = "none"
     cut_off_cells: Positive | None = None
-    floor: Positive | None = None
-    tension: Positive | None = None
+    floor: Length | None = None
+    tension: Annotated[Positive, measured("Pa")] | None = None
     """Tension in Pa at which the film cavitates as the sphere leaves (``cavitating_film``); else it holds."""
     tangential: bool = False
 
@@ -109,9 +122,9 @@ class Span(Record):
     A case without ``[contact]`` ends where the sphere would touch the wall. ``snapshot_interval`` in s.
     """
 
-    after_contact: Positive | None = None
-    duration: Positive | None = None
-    snapshot_interval: Positive | None = None
+    after_contact: Duration | None = None
+    duration: Duration | None = None
+    snapshot_interval: Duration | None = None
 
 
 class Study(Record):
@@ -143,7 +156,7 @@ class Case(Record):
     fluid: Fluid
     sphere: Sphere
     wall: Wall | None = None
-    gravity: Positive = 9.81
+    gravity: Acceleration = 9.81
     release: Release
     numerics: Numerics | None = None
     film: FilmModel = FilmModel()

@@ -149,9 +149,10 @@ def run_validate(args: argparse.Namespace) -> None:
 
 
 def _raise(defects: list) -> None:
-    """Raise what was found, the first so many; nothing where nothing was found."""
-    from restitution.errors import Defect, InputError
+    """Raise what was found, by cause, the first so many; nothing where nothing was found."""
+    from restitution.errors import Defect, InputError, by_cause
 
+    defects = by_cause(defects)
     if len(defects) > MOST_DEFECTS:
         defects = [*defects[:MOST_DEFECTS], Defect(f"and {len(defects) - MOST_DEFECTS} more")]
     if defects:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from restitution.commands import options
 from restitution.commands.console import show, show_rows
-from restitution.commands.predict import numbers
 
 if TYPE_CHECKING:
     from restitution.calibration.result.design import Gain
@@ -34,10 +33,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--height",
-        type=numbers,
+        type=options.numbers_in("m"),
         default=[0.01, 0.05, 0.2],
         metavar="H[,H...]",
-        help="release heights in m (0.01,0.05,0.2)",
+        help="release heights in m or with a unit (0.01,0.05,0.2)",
     )
     parser.add_argument("--all", action="store_true", help="every release height, not only the best of each pair")
     parser.add_argument(

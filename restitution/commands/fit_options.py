@@ -31,6 +31,7 @@ def add_data(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML, where columns do not say")
     options.add_columns(parser)
+    options.add_track(parser)
     parser.add_argument(
         "--allow-unphysical", action="store_true", help="take e_eff above 1 or below 0 as measured"
     )
@@ -112,6 +113,7 @@ def reading_of(args: argparse.Namespace) -> Reading:
         conditions=read_conditions(args.conditions) if args.conditions else None,
         unphysical=args.allow_unphysical,
         axes=(args.x, args.y),
+        track=options.settings_of(args),
     )
 
 

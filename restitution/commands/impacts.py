@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from restitution.commands import options
 from restitution.commands.console import show, show_rows
@@ -28,8 +28,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "track",
         nargs="?",
         metavar="TRACK",
-        help="a CSV file of time and gap (surface to wall) or velocity (positive away from the wall, measured as "
-        "such: of positions give the gaps), or the name of a shipped record",
+        help="a file of time and gap (surface to wall) or velocity (positive away from the wall, measured as "
+        "such: of positions give the gaps), as a tracking program, spreadsheet or solver writes it, or the "
+        "name of a shipped record",
     )
     parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML (see --template)")
     parser.add_argument(
@@ -48,10 +49,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--sigma", type=float, metavar="S", help="noise of the track in its unit (default: estimated)"
     )
     options.add_columns(parser)
-    parser.add_argument("--unit", choices=("m", "mm"), help="length unit of the track; needed with --column")
-    parser.add_argument("--time-unit", choices=("s", "ms"), help="time unit of the track; needed with --column")
+    options.add_track(parser)
     parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
-    parser.add_argument("--template", metavar="FOLDER", help="write track.csv and conditions.toml to start from")
+    parser.add_argument(
+        "--template", metavar="FOLDER", help="write track.csv, conditions.toml, settings.toml to start from"
+    )
     parser.set_defaults(run=run)
 
 
@@ -73,15 +75,17 @@ def run(args: argparse.Namespace) -> None:
             raise InputError(Defect(rule, field=name, value=str(getattr(args, name.removeprefix("--")))))
     if args.out is not None:
         _check_output(args)
-    track, conditions, kind = _read(args)
+    track, conditions, kind, said = _read(args)
     impacts = find_impacts(
         track, conditions, args.speed, args.stokes, Path(args.track).stem, kind, args.frames, args.film
     )
     table = impacts.table()
     if args.out:
-        write_whole(args.out, table_text(table))
+        write_whole(args.out, table_text(table.assign(time_s=_times(table))))
+    if said.reading:
+        show(f"read: {said.reading}")
     _show(table, impacts.sigma, "m" if track.quantity == "gap" else "m/s")
-    for note in impacts.notes:
+    for note in (*said.notes, *impacts.notes):
         show(f"note: {note}")
 
 
@@ -91,48 +95,59 @@ def _check_output(args: argparse.Namespace) -> None:
 
     if not args.out:
         raise InputError(Defect("names no file", field="--out"))
-    for given in (args.track, args.conditions):
+    for given in (args.track, args.conditions, args.settings):
         if given and Path(given).exists() and Path(args.out).resolve() == Path(given).resolve():
             raise InputError(Defect("would replace an input", file=args.out, field="--out"))
 
 
-def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str]:
-    """The track, its conditions and its kind."""
+class _Said(NamedTuple):
+    """How the file was read, in one line, and notes on it."""
+
+    reading: str = ""
+    notes: tuple[str, ...] = ()
+
+
+def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str, _Said]:
+    """The track, its conditions, its kind, and how it was read."""
     from restitution import datasets
     from restitution.conditions import read_conditions
-    from restitution.datasets.checks import infer_schema
+    from restitution.datasets.checks import fitting_schemas
     from restitution.errors import Defect, InputError
-    from restitution.tables.reading import read_table
-    from restitution.tracks import Track
+    from restitution.foreign import read_foreign, read_track
+    from restitution.foreign.track import columns_of
 
     if args.sigma is not None and not 0 < args.sigma < math.inf:
         raise InputError(Defect("must be positive and finite", field="--sigma", value=f"{args.sigma:g}"))
-    columns = dict(args.column)
     if not Path(args.track).exists():
         if args.track not in datasets.names():
             raise InputError(Defect("does not exist, and no shipped record has this name", file=args.track))
         resource = datasets.resource(args.track)
         conditions = read_conditions(args.conditions) if args.conditions else resource.conditions
-        return datasets.load_track(args.track, args.sigma), conditions, resource.kind
+        return datasets.load_track(args.track, args.sigma), conditions, resource.kind, _Said()
     if not args.conditions:
         raise InputError(
             f"{args.track}: fluid and sphere are needed: --conditions FILE (--template writes an example)"
         )
-    for option, given, choice in (("--unit", args.unit, "m or mm"), ("--time-unit", args.time_unit, "s or ms")):
-        if columns and not given:
-            raise InputError(f"columns named by --column have no stated unit: add {option} {choice}")
-    schema = infer_schema(args.track, columns)
-    if schema.name not in ("trajectory", "settling"):
-        raise InputError(
-            Defect(f"is a {schema.name} table, not a track of time and gap or velocity", file=args.track)
-        )
-    length = 1e-3 if args.unit == "mm" else 1.0
-    time = 1e-3 if args.time_unit == "ms" else 1.0
-    value = schema.columns[1]
-    scale = {"time_s": time, value: length / (time if value == "velocity_m_s" else 1.0)}
-    sigma = None if args.sigma is None else args.sigma * scale[value]
-    track = Track.from_table(read_table(args.track, schema, columns, scale), sigma)
-    return track, read_conditions(args.conditions), "measured"
+    options.check_track_columns(args.column)
+    settings = options.settings_of(args)
+    table = read_foreign(args.track, settings.decimal)
+    kinds = fitting_schemas(table.header, {})
+    if columns_of(table, settings) is None and len(kinds) == 1:
+        rule = f"is a {kinds[0].name} table, not a track of time and gap or velocity"
+        raise InputError(Defect(rule, file=args.track))
+    conditions = read_conditions(args.conditions)
+    found = read_track(table, settings, conditions)
+    return found.track(args.sigma), conditions, "measured", _Said(found.reading, found.notes)
+
+
+_LATE = 1e2
+"""Times in s from which six digits no longer tell impacts apart, as those of a computer's clock."""
+
+
+def _times(table: pd.DataFrame) -> pd.Series:
+    """The times to be written: of late ones all digits down to a microsecond."""
+    late = not table.empty and table["time_s"].abs().max() >= _LATE
+    return table["time_s"].map("{:.6f}".format) if late else table["time_s"]
 
 
 def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
@@ -144,14 +159,14 @@ def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
     def with_error(value: float, error: float, digits: int) -> str:
         return "" if math.isnan(value) else f"{value:.{digits}f} +- {error:.{digits}f}"
 
-    rows = []
+    rows, short = [], table["time_s"].abs().max() < _LATE
     for r in table.itertuples():
         resolved = r.outcome == "rebound"
         v_in = with_error(r.impact_speed_m_s, r.impact_speed_sigma_m_s, 4)
         v_out = with_error(r.rebound_speed_m_s, r.rebound_speed_sigma_m_s, 4)
         e = with_error(r.e_eff, r.e_eff_sigma, 3) if resolved else f"< {r.e_eff_upper:.3f}"
         St = with_error(r.stokes, r.stokes_sigma, 1)
-        rows.append((str(r.impact), f"{r.time_s:.5g}", v_in, v_out, St, e, r.note))
+        rows.append((str(r.impact), f"{r.time_s:.5g}" if short else f"{r.time_s:.4f}", v_in, v_out, St, e, r.note))
     first = table.iloc[0]
     show(f"speed: {first.speed_definition}, Stokes number: {first.stokes_convention}, noise: {sigma:.2g} {unit}")
     headings = ("impact", "time_s", "impact speed m/s", "rebound speed m/s", "St", "e_eff", "note")
@@ -162,20 +177,23 @@ def _write_template(folder: Path) -> None:
     from restitution import datasets
     from restitution.errors import Defect, InputError
     from restitution.files import write_folder
+    from restitution.foreign.settings import TEMPLATE
     from restitution.tables.writing import table_text
 
-    for name in ("track.csv", "conditions.toml"):
+    track = table_text(datasets.load("gondret2002_st152").iloc[:45], None)
+    contents = {"track.csv": track, "conditions.toml": _CONDITIONS, "settings.toml": TEMPLATE}
+    for name in contents:
         if (folder / name).exists():
             raise InputError(Defect("exists already; a template replaces nothing", file=str(folder / name)))
-    track = table_text(datasets.load("gondret2002_st152").iloc[:45], None)
-    write_folder(folder, {"track.csv": track, "conditions.toml": _CONDITIONS})
+    write_folder(folder, contents)
     show(f"{folder / 'track.csv'}: a track, the first bounce of Gondret et al. 2002")
     show(f"{folder / 'conditions.toml'}: its conditions")
+    show(f"{folder / 'settings.toml'}: what the numbers of your own track mean, for --settings")
     show(f"next: restitution impacts {folder / 'track.csv'} --conditions {folder / 'conditions.toml'}")
 
 
 _CONDITIONS = """\
-# Conditions of an experiment, in SI units. Keys without a value in the comments are needed.
+# Conditions of an experiment, in SI units, or with units: "10 mPa s", "0.935 g/cm3", "10.7 cSt", "3 mm".
 source = "Gondret, Lance & Petit, Phys. Fluids 14, 643 (2002)"  # where the data come from (may be left out)
 gravity = 9.81            # m/s2 (may be left out: 9.81)
 

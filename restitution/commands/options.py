@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from restitution.foreign.settings import Settings
+
+_TRACK_COLUMNS = {"time_s": "time", "gap_m": "position", "velocity_m_s": "velocity"}
 
 
 def add_columns(parser: argparse.ArgumentParser) -> None:
@@ -16,6 +22,67 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
         metavar="COLUMN=NAME",
         help="the file's own NAME for a column, as in gap_m=y; other columns are then ignored; may be repeated",
     )
+
+
+def add_track(parser: argparse.ArgumentParser) -> None:
+    """The options that say what the numbers of a track mean."""
+    group = parser.add_argument_group("what the numbers of a track mean, where its file does not say it")
+    group.add_argument("--settings", metavar="FILE", help="all of this in a TOML file; options go before it")
+    group.add_argument("--unit", metavar="U", help="of positions: m, mm, px, 0.3mm, d; of velocities also mm/s")
+    group.add_argument("--time-unit", metavar="U", help="s, ms, frame, 0.5ms, sqrt(d/g)")
+    group.add_argument("--fps", type=float, metavar="N", help="frames a second, of the camera")
+    group.add_argument("--pixel", metavar="LENGTH", help="length of a pixel, as in 0.125mm")
+    group.add_argument(
+        "--direction", choices=("up", "down"), help="whether values grow away from the wall (up) or towards it"
+    )
+    group.add_argument(
+        "--wall", type=_wall, metavar="X", help="position of the wall in the file's unit, or rest: where it rests"
+    )
+    group.add_argument("--point", choices=("lowest", "centre"), help="whose position it is, of the sphere's")
+    group.add_argument("--particle", metavar="ID", help="which particle or track, where the file has several")
+
+
+def check_track_columns(columns: Iterable[tuple[str, str]]) -> None:
+    """Refuse names that are no columns of a track."""
+    from restitution.errors import Defect, InputError
+
+    rule = f"is not a column of a track: {', '.join(_TRACK_COLUMNS)}"
+    defects = [Defect(rule, field="--column", value=name) for name, _ in columns if name not in _TRACK_COLUMNS]
+    if defects:
+        raise InputError(*defects)
+
+
+def settings_of(args: argparse.Namespace) -> Settings:
+    """What the numbers of tracks mean: the options, and the settings file where they say nothing."""
+    import math
+
+    from restitution.errors import Defect, InputError
+    from restitution.foreign.settings import Settings, read_settings
+
+    if args.fps is not None and not 0 < args.fps < math.inf:
+        raise InputError(Defect("must be positive and finite", field="--fps", value=f"{args.fps:g}"))
+    columns = {_TRACK_COLUMNS[name]: own for name, own in args.column if name in _TRACK_COLUMNS}
+    given = Settings(
+        unit=args.unit,
+        time_unit=args.time_unit,
+        frames_per_second=args.fps,
+        pixel=args.pixel,
+        direction=args.direction,
+        wall=args.wall,
+        point=args.point,
+        particle=args.particle,
+        **columns,
+    )
+    return given.over(read_settings(args.settings)) if args.settings else given
+
+
+def _wall(text: str) -> float | str:
+    if text == "rest":
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is neither a number nor 'rest'") from None
 
 
 def pair(text: str) -> tuple[str, str]:
@@ -33,6 +100,39 @@ def assignment(text: str) -> tuple[str, float]:
         return name, float(value)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
+
+
+def amount(text: str) -> tuple[str, float | str]:
+    """``NAME=NUMBER``, or ``NAME=NUMBER UNIT`` for what knows its unit, as an argument type."""
+    name, value = pair(text)
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, value
+
+
+def numbers_in(unit: str) -> Callable[[str], list[float]]:
+    """The argument type of positive numbers separated by commas, in ``unit`` or with a unit of their own."""
+
+    def numbers(text: str) -> list[float]:
+        from restitution.units import UnitError, in_si
+
+        try:
+            parsed = [_plain_or_in_si(part, unit, in_si) for part in text.split(",")]
+        except UnitError as error:
+            raise argparse.ArgumentTypeError(f"{text!r}: {error}") from None
+        if not all(0 < x < float("inf") for x in parsed):
+            raise argparse.ArgumentTypeError(f"{text!r} must be positive and finite")
+        return parsed
+
+    return numbers
+
+
+def _plain_or_in_si(part: str, unit: str, in_si: Callable[[str, str], float]) -> float:
+    try:
+        return float(part)
+    except ValueError:
+        return in_si(part, unit)
 
 
 def check_output(option: str, out: str | None, inputs: Iterable[str] = ()) -> None:

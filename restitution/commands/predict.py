@@ -23,14 +23,27 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         description="Predict e_eff by a fit that 'restitution fit --out' wrote.",
     )
     parser.add_argument("fit", metavar="FIT", help="the JSON of a fit")
-    parser.add_argument("--fluid", type=values, metavar="density=D,viscosity=MU", help="in kg/m3 and Pa s")
-    parser.add_argument("--sphere", type=values, metavar="diameter=D,density=RHO[,e_dry=E]", help="in m and kg/m3")
-    parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML instead")
     parser.add_argument(
-        "--speed", type=numbers, metavar="V[,V...]", help="impact speeds in m/s, by the fit's definition"
+        "--fluid",
+        type=values,
+        metavar="density=D,viscosity=MU",
+        help="in kg/m3 and Pa s, or with units: viscosity=10 mPa s",
     )
     parser.add_argument(
-        "--st", type=numbers, metavar="ST[,ST...]", help="Stokes numbers instead, by the fit's convention"
+        "--sphere", type=values, metavar="diameter=D,density=RHO[,e_dry=E]", help="in m and kg/m3, or with units"
+    )
+    parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML instead")
+    parser.add_argument(
+        "--speed",
+        type=options.numbers_in("m/s"),
+        metavar="V[,V...]",
+        help="impact speeds in m/s or with a unit, by the fit's definition",
+    )
+    parser.add_argument(
+        "--st",
+        type=options.numbers_in("1"),
+        metavar="ST[,ST...]",
+        help="Stokes numbers instead, by the fit's convention",
     )
     parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
     parser.add_argument(
@@ -44,20 +57,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.set_defaults(run=run)
 
 
-def values(text: str) -> dict[str, float]:
-    """``key=number,key=number`` as an argument type."""
-    return dict(options.assignment(part.strip()) for part in text.split(","))
-
-
-def numbers(text: str) -> list[float]:
-    """Positive numbers separated by commas as an argument type."""
-    try:
-        parsed = [float(part) for part in text.split(",")]
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers") from None
-    if not all(0 < x < float("inf") for x in parsed):
-        raise argparse.ArgumentTypeError(f"{text!r} must be positive and finite")
-    return parsed
+def values(text: str) -> dict[str, float | str]:
+    """``key=number,key=number``, with units or in SI, as an argument type."""
+    return dict(options.amount(part.strip()) for part in text.split(","))
 
 
 def conditions_of(args: argparse.Namespace) -> Conditions | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from restitution import datasets
@@ -39,23 +39,27 @@ def check_package(path: str | Path | None = None) -> list[Defect]:
     return defects
 
 
+def fitting_schemas(header: Sequence[str], mapped: Mapping[str, str]) -> list[Schema]:
+    """The kinds of tables that a header fits, its own names ``mapped`` to columns of a schema."""
+    own = {name for name in header if name not in mapped.values()} | mapped.keys()
+    return [
+        s
+        for s in map(datasets.schema, datasets.schema_names())
+        if own.issuperset(s.required) and (mapped.keys() <= set(s.columns) if mapped else own <= set(s.columns))
+    ]
+
+
 def infer_schema(path: str | Path, columns: Mapping[str, str] | None = None) -> Schema:
     """The one kind of table that the header of a CSV file fits; raises :class:`InputError` if not exactly one.
 
     ``columns`` maps columns of the schema to the file's own names, as in :func:`restitution.tables.read_table`.
     """
     header = read_header(path)
-    mapped = columns or {}
-    own = {name for name in header if name not in mapped.values()} | mapped.keys()
-    kinds = [datasets.schema(name) for name in datasets.schema_names()]
-    fits = [
-        s
-        for s in kinds
-        if own.issuperset(s.required) and (mapped.keys() <= set(s.columns) if mapped else own <= set(s.columns))
-    ]
+    fits = fitting_schemas(header, columns or {})
     if len(fits) == 1:
         return fits[0]
+    kinds = [datasets.schema(name) for name in datasets.schema_names()]
     known = "; ".join(f"{s.name} ({', '.join(s.required)})" for s in kinds)
     what = f"the header ({', '.join(header)}) does not tell which kind of table this is"
-    rule = f"{what}: name the kind or map its columns; known: {known}"
+    rule = f"{what}: name the kind or map its columns (--schema KIND, --column gap_m=NAME); known: {known}"
     raise InputError(Defect(rule, file=str(path), row=1))

@@ -92,7 +92,9 @@ def find_impacts(
             speeds = measure(contact, np.random.default_rng([seed, i]))
         except UnresolvedError as reason:
             frame = contact.approach[-1] if contact.approach else contact.rebound[0]
-            notes.append(f"impact {i + 1}, near t = {track.time_s[frame]:.4g} s: {reason}")
+            t = track.time_s[frame]
+            when = f"{t:.4g}" if abs(t) < 100 else f"{t:.4f}"  # a computer's clock needs all its digits
+            notes.append(f"impact {i + 1}, near t = {when} s: {reason}")
             continue
         rows.append({"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, stokes))
     return Impacts(rows, track.sigma, notes)
@@ -104,11 +106,13 @@ def _remarks(track: Track, conditions: Conditions, found: Contacts) -> list[str]
     if track.quantity == "gap" and np.min(track.value) > 0.2 * d:
         remarks.append(
             f"the gap never falls below {np.min(track.value):.3g} m, {np.min(track.value) / d:.2g} d: "
-            "is it the height of the centre? It must be that of the lowest point"
+            "is it the height of the centre? It must be that of the lowest point (--point centre)"
         )
     fastest = np.max(np.abs(np.diff(track.value) / np.diff(track.time_s)), initial=0.0)
     if track.quantity == "gap" and not 1e-3 < fastest < 30:
-        remarks.append(f"the greatest speed in the track is {fastest:.2g} m/s: are the units right?")
+        remarks.append(
+            f"the greatest speed in the track is {fastest:.2g} m/s: are the units right (--unit, --time-unit)?"
+        )
     if found.level is not None and abs(found.level) > DETECTION * track.sigma:
         remarks.append(f"the sphere rests at a gap of {found.level:.3g} m: gaps are counted from there")
     return remarks

@@ -29,22 +29,26 @@ class CsvText:
     unreadable: int = 0
     defects: list[Defect] = field(default_factory=list)
 
-    def __post_init__(self) -> None:
+    @classmethod
+    def read(cls, path: str | Path) -> CsvText:
+        """The text of a file; whatever keeps it from being read is a defect."""
+        text = cls(path)
         try:
-            data = Path(self.path).read_bytes()
+            data = Path(path).read_bytes()
         except FileNotFoundError:
-            self._defect("does not exist")
+            text._defect("does not exist")
         except IsADirectoryError:
-            self._defect("is a folder; a CSV file is needed")
+            text._defect("is a folder; a CSV file is needed")
         except OSError as error:
-            self._defect(f"cannot be read: {error.strerror}")
+            text._defect(f"cannot be read: {error.strerror}")
         else:
             if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-                self._defect("is UTF-16 text; save it as UTF-8", 1)
+                text._defect("is UTF-16 text; save it as UTF-8", 1)
             elif not data.removeprefix(codecs.BOM_UTF8).strip():
-                self._defect("is empty")
+                text._defect("is empty")
             else:
-                self._read(data)
+                text._read(data)
+        return text
 
     def _defect(self, rule: str, row: int | None = None) -> None:
         self.defects.append(Defect(rule, file=str(self.path), row=row))

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def check_table(
-    path: str | Path,
+    path: str | Path | CsvText,
     schema: Schema,
     columns: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
@@ -34,7 +34,7 @@ def check_table(
 
     Parameters
     ----------
-    path : the file.
+    path : the file, or its text as another reader made it plain.
     schema : columns with type, unit and constraints.
     columns : the file's own names of the schema's columns; others are then ignored, while without it an unknown
         column is a defect.
@@ -44,7 +44,7 @@ def check_table(
 
 
 def read_table(
-    path: str | Path,
+    path: str | Path | CsvText,
     schema: Schema,
     columns: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
@@ -60,7 +60,7 @@ def read_table(
 
 
 def examine_table(
-    path: str | Path,
+    path: str | Path | CsvText,
     schema: Schema,
     columns: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
@@ -88,23 +88,23 @@ def _frame(schema: Schema, values: Mapping[str, list], lines: list[int]) -> pd.D
 
 def read_header(path: str | Path) -> list[str]:
     """The column names of a CSV file; raises :class:`InputError` if it has none that can be read."""
-    text = CsvText(path)
+    text = CsvText.read(path)
     if not text.header:
         raise InputError(*text.defects)
     return text.header
 
 
 def _check(
-    path: str | Path,
+    path: str | Path | CsvText,
     schema: Schema,
     columns: Mapping[str, str] | None,
     scale: Mapping[str, float] | None,
 ) -> tuple[list[Defect], dict[str, list], list[int]]:
     """All defects, in the order of the file, the values by column (``None`` for an empty cell), and their rows."""
-    text = CsvText(path)
+    text = path if isinstance(path, CsvText) else CsvText.read(path)
     if not text.header:
         return text.defects, {}, []
-    file, header, columns, scale = str(path), text.header, columns or {}, scale or {}
+    file, header, columns, scale = str(text.path), text.header, columns or {}, scale or {}
     wanted = {name: columns.get(name, name) for name in schema.columns}
     found = [*text.defects, *_header_defects(file, schema, header, columns, scale)]
 

@@ -14,14 +14,17 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, Field, ValidationError
 
 from restitution.conditions import defects_of
 from restitution.errors import Defect, InputError
-from restitution.tables.csv_text import NUMBER, CsvText
+from restitution.foreign.file_text import read_lines
+from restitution.foreign.layout import Layout, layout_of
+from restitution.foreign.number_text import Decimal, plain
+from restitution.tables.csv_text import NUMBER
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,12 +56,15 @@ class _Axes(_Part):
 class _Point(_Part):
     x: float
     y: float
+    group: int | None = None
+    """Of several points that belong together, as a mean and the ends of its error bar, which one it is."""
 
 
 class _Dataset(_Part):
     name: str
     axes: str = Field(alias="axesName")
     data: list[_Point]
+    groups: list[str] = Field(default_factory=list, alias="groupNames")
 
 
 class _Project(_Part):
@@ -66,72 +72,106 @@ class _Project(_Part):
     datasets: list[_Dataset] = Field(alias="datasetColl")
 
 
-def is_export(path: str | Path) -> bool:
+def is_export(path: str | Path, decimal: Decimal | None = None) -> bool:
     """Whether a file is an export: JSON, or CSV of two columns without names, or with X and Y under names."""
     if str(path).endswith(".json"):
         return True
-    rows = _cells(path)[:2]
+    rows = layout_of(read_lines(path), str(path), decimal).rows
     if not rows:
         return False
-    numbers = all(NUMBER.fullmatch(cell) for cell in rows[0][1]) and len(rows[0][1]) == 2
-    return numbers or (len(rows) > 1 and _is_axes(rows[1][1]))
+    numbers = len(rows[0].cells) == 2 and all(NUMBER.fullmatch(plain(cell, ",")) for cell in rows[0].cells)
+    return numbers or (len(rows) > 1 and _is_axes(rows[1].cells))
 
 
-def read_export(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
+def read_export(path: str | Path, axes: tuple[str, str], decimal: Decimal | None = None) -> pd.DataFrame:
     """A table with columns ``source`` (the data set) and those that x and y are, errors where pixels tell them."""
-    return _read_project(path, axes) if str(path).endswith(".json") else _read_csv(path, axes)
+    return _read_project(path, axes) if str(path).endswith(".json") else _read_csv(path, axes, decimal)
+
+
+def bars_left_out(path: str | Path) -> int:
+    """How many points of a project are ends of error bars, which are not taken: nobody states what they mean."""
+    project = _Project.model_validate(_of_version_4(json.loads(Path(path).read_bytes())))
+    return sum(bool(p.group) for dataset in project.datasets for p in dataset.data)
 
 
 def _is_axes(cells: list[str]) -> bool:
     return len(cells) >= 2 and [c.upper() for c in cells] == ["X", "Y"] * (len(cells) // 2)
 
 
-def _cells(path: str | Path) -> list[tuple[int, list[str]]]:
-    """Rows of text by line number; the strict reader is for tables with a header, which these have not."""
-    text = CsvText(path)
-    if not text.header and not text.defects:
-        return []
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError):
-        return []
-    return [(i, [c.strip() for c in line.split(",")]) for i, line in enumerate(lines, 1) if line.strip()]
-
-
-def _read_csv(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
+def _read_csv(path: str | Path, axes: tuple[str, str], decimal: Decimal | None) -> pd.DataFrame:
     import pandas as pd
 
-    rows = _cells(path)
-    names = [Path(path).stem]
-    if len(rows) > 1 and _is_axes(rows[1][1]):
-        names = rows[0][1][::2]
-        rows = rows[2:]
+    layout = layout_of(read_lines(path), str(path), decimal)
+    names, rows = [Path(path).stem], layout.rows
+    if len(rows) > 1 and _is_axes(rows[1].cells):
+        names, rows = _set_names(layout), rows[2:]
     columns: dict[str, list] = {"source": [], axes[0]: [], axes[1]: []}
-    for line, cells in rows:
+    lines = []
+    for row in rows:
+        cells = [plain(cell, layout.decimal) for cell in row.cells]
+        if len(cells) % 2 or any(cells[2 * len(names) :]):
+            rule = f"has {len(cells)} values where there are {2 * len(names)} columns, an x and a y a data set"
+            raise InputError(Defect(rule, file=str(path), row=row.line))
         for k, name in enumerate(names):
             pair = cells[2 * k : 2 * k + 2]
             if not any(pair):
                 continue  # data sets of different length leave empty cells
             for cell in pair:
                 if not NUMBER.fullmatch(cell):
-                    raise InputError(Defect("is not a number", file=str(path), row=line, field=name, value=cell))
+                    raise InputError(
+                        Defect("is not a number", file=str(path), row=row.line, field=name, value=cell)
+                    )
             columns["source"].append(name)
             columns[axes[0]].append(float(pair[0]))
             columns[axes[1]].append(float(pair[1]))
-    return pd.DataFrame(columns)
+            lines.append(row.line)
+    return pd.DataFrame(columns, index=pd.Index(lines, name="row"))
+
+
+def _set_names(layout: Layout) -> list[str]:
+    """The names of the data sets, each followed by an empty cell; the program does not quote a comma in them."""
+    names, axes = layout.rows[0], layout.rows[1].cells
+    if len(names.cells) == len(axes):
+        return names.cells[::2]
+    apart = layout.lines[names.line - 1].strip().removesuffix(layout.separator).split(2 * layout.separator)
+    if len(apart) != len(axes) // 2:
+        rule = f"has names that are not to be told apart: there are {len(axes) // 2} data sets below"
+        raise InputError(Defect(rule, file=layout.file, row=names.line))
+    return [name.strip() for name in apart]
+
+
+def _of_version_4(content: Any) -> Any:
+    """A project in the form of WebPlotDigitizer 4; version 3 has one pair of axes, and calls its parts otherwise.
+
+    Axes that no data set uses are left out: they may be of a kind that is not read.
+    """
+    if not isinstance(content, dict):
+        return content
+    inner = content.get("wpd", content)
+    if isinstance(inner, dict) and "axesType" in inner and isinstance(inner.get("dataSeries"), list):
+        axes = {
+            "name": "XY", "type": inner["axesType"], "calibrationPoints": inner.get("calibration"),
+            **(inner.get("axesParameters") or {}),
+        }  # fmt: skip
+        series = [{**s, "axesName": "XY"} if isinstance(s, dict) else s for s in inner["dataSeries"]]
+        return {"axesColl": [axes], "datasetColl": series}
+    if isinstance(inner, dict) and all(isinstance(inner.get(key), list) for key in ("axesColl", "datasetColl")):
+        used = {d.get("axesName") for d in inner["datasetColl"] if isinstance(d, dict)}
+        known = [a for a in inner["axesColl"] if not isinstance(a, dict) or a.get("name") in used]
+        return {**inner, "axesColl": known or inner["axesColl"]}
+    return inner
 
 
 def _read_project(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
     import pandas as pd
 
     try:
-        content = json.loads(Path(path).read_bytes())
-        project = _Project.model_validate(content.get("wpd", content) if isinstance(content, dict) else content)
+        project = _Project.model_validate(_of_version_4(json.loads(Path(path).read_bytes())))
     except OSError as error:
         raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
     except ValidationError as error:
         raise InputError(*defects_of(error, str(path))) from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(Defect(f"is not JSON: {error}", file=str(path))) from None
     known = {a.name: a for a in project.axes}
     parts = []
@@ -139,7 +179,8 @@ def _read_project(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
         if dataset.axes not in known:
             rule = f"is not the name of axes; there are: {', '.join(known) or 'none'}"
             raise InputError(Defect(rule, file=str(path), field=f"{dataset.name}.axesName", value=dataset.axes))
-        pixels = np.array([(p.x, p.y) for p in dataset.data]).reshape(-1, 2)
+        points = [p for p in dataset.data if not p.group]  # the others are ends of error bars
+        pixels = np.array([(p.x, p.y) for p in points]).reshape(-1, 2)
         x, y, x_sigma, y_sigma = _values(known[dataset.axes], pixels, str(path))
         parts.append(
             pd.DataFrame(

@@ -14,13 +14,15 @@ from pathlib import Path
 from typing import Any
 
 from restitution import datasets
-from restitution.calibration.reading.digitizer import PIXEL, is_export, read_export
+from restitution.calibration.reading.digitizer import PIXEL, bars_left_out, is_export, read_export
 from restitution.calibration.reading.impact_table import SCHEMA, from_table
 from restitution.calibration.reading.observations import Observations, join
 from restitution.calibration.reading.reading import Reading
 from restitution.calibration.reading.track_impacts import from_track, from_track_file, is_track
 from restitution.errors import Defect, InputError
-from restitution.tables.reading import examine_table, read_header
+from restitution.foreign.table import read_foreign
+from restitution.foreign.track import what_is_needed
+from restitution.tables.reading import examine_table
 from restitution.tables.schema import read_schema
 
 
@@ -71,23 +73,31 @@ def _read_one(path: str, how: Reading) -> Observations:
             conditions = how.conditions or resource.conditions
             return from_track(datasets.load_track(path), conditions, how, path, digest)
         raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
-    if is_export(path):
+    if is_export(path, how.track.decimal):
         return _from_export(path, how, _digest(path))
-    if is_track(read_header(path), how):
-        return from_track_file(path, how, _digest(path))
+    foreign = read_foreign(path, how.track.decimal)
+    if is_track(foreign, how):
+        return from_track_file(foreign, how, _digest(path))
     _known_columns(dict.fromkeys(how.columns, "--column"))
-    defects, table = examine_table(path, read_schema(SCHEMA), how.columns)
+    if not set(foreign.header) & {*read_schema(SCHEMA).columns, *how.columns.values()}:
+        rule = f"{what_is_needed(foreign).rule}; of impacts: --column stokes=NAME --column e_eff=NAME"
+        raise InputError(Defect(rule, file=path))
+    defects, table = examine_table(foreign.text(), read_schema(SCHEMA), how.columns)
     return from_table(table, how, path, _digest(path), defects)
 
 
 def _from_export(path: str, how: Reading, digest: str) -> Observations:
     """The points of a digitised plot, each data set a source."""
     _known_columns(dict(zip(how.axes, ("--x", "--y"), strict=True)))
-    points = from_table(read_export(path, how.axes), replace(how, columns={}), path, digest)
+    points = from_table(read_export(path, how.axes, how.track.decimal), replace(how, columns={}), path, digest)
     if not path.endswith(".json"):
         return points
     note = f"{path}: errors are those of a click, {PIXEL:g} pixel; those of the measurement are in the scatter"
-    return replace(points, notes=(*points.notes, note))
+    bars = bars_left_out(path)
+    left_out = [f"{path}: {bars} ends of error bars are left out: the file does not say what they mean"] * bool(
+        bars
+    )
+    return replace(points, notes=(*points.notes, note, *left_out))
 
 
 def _known_columns(given: Mapping[str, str]) -> None:

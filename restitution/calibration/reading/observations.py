@@ -194,22 +194,36 @@ def _the_one(column: pd.Series) -> str:
     return str(stated[0])
 
 
+def _converted(o: Observations, key: str) -> Observations:
+    """The same impacts under another definition of the Stokes number; some need fluid and sphere for that."""
+    if o.convention == key:
+        return o
+    file = next(iter(o.files), None)
+    try:
+        ratio = np.array([StokesNumber(1.0, o.convention).to(key, c).value for c in o.conditions], float)
+    except InputError as error:
+        rule = f"{error}: --conditions FILE, or columns of fluid and sphere"
+        raise InputError(Defect(rule, file=file, field="stokes_convention", value=o.convention)) from None
+    note = f"{file or 'impacts'}: Stokes numbers converted from {o.convention} to {key}"
+    return dataclasses.replace(
+        o, St=o.St * ratio, St_sigma=o.St_sigma * ratio, convention=key, notes=(*o.notes, note)
+    )
+
+
 def join(parts: list[Observations]) -> Observations:
-    """All observations of several files; raises :class:`InputError` where conventions differ."""
+    """All observations of several files, in the Stokes number of the first; raises where impact speeds differ."""
     first = parts[0]
+    parts = [first, *(_converted(other, first.convention) for other in parts[1:])]
     for other in parts[1:]:
         if other.simulated != first.simulated:
             kinds = ["measured", "simulated"]
             here, there = kinds[other.simulated], kinds[first.simulated]
             rule = f"has {here} impacts, the first file {there} ones: fit them apart"
             raise InputError(Defect(rule, file=next(iter(other.files), None), field="kind"))
-        for what in ("convention", "speed"):
-            if getattr(other, what) != getattr(first, what):
-                file = next(iter(other.files), None)
-                rule = f"{what} differs from {getattr(first, what)} of {next(iter(first.files), 'the first file')}"
-                raise InputError(
-                    Defect(f"{rule}: fit data of one definition", file=file, value=str(getattr(other, what)))
-                )
+        if other.speed != first.speed:
+            rule = f"speed differs from {first.speed} of {next(iter(first.files), 'the first file')}"
+            file = next(iter(other.files), None)
+            raise InputError(Defect(f"{rule}: fit data of one definition", file=file, value=str(other.speed)))
     names = dict.fromkeys(name for part in parts for name in part.labels)
     labels = {
         name: np.concatenate([p.labels.get(name, np.full(len(p), "", object)) for p in parts]) for name in names

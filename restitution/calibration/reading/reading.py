@@ -6,7 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from restitution.conditions import Conditions
+from restitution.foreign.settings import Settings
 from restitution.stokes import Speed
+
+TRACK_COLUMNS = {"time_s": "time", "gap_m": "position", "velocity_m_s": "velocity"}
+"""Columns of a track and the keys of settings that name them."""
 
 
 @dataclass(frozen=True)
@@ -25,3 +29,11 @@ class Reading:
     """Admit e_eff above 1 or below 0."""
     axes: tuple[str, str] = ("stokes", "e_eff")
     """Which columns x and y of a digitised plot are."""
+    track: Settings = field(default_factory=Settings)
+    """What the numbers of tracks mean, where their files do not say it."""
+
+    @property
+    def settings(self) -> Settings:
+        """Those of tracks, their columns mapped as ``columns`` says."""
+        names = {key: self.columns[name] for name, key in TRACK_COLUMNS.items() if name in self.columns}
+        return Settings(**names).over(self.track)

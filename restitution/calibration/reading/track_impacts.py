@@ -2,44 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
-from restitution import datasets
 from restitution.calibration.reading.impact_checks import CONDITIONS, NO_SPEED, check_physical
 from restitution.calibration.reading.impact_table import SCHEMA, conditions_of_row
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.reading.reading import Reading
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
+from restitution.foreign.table import ForeignTable
+from restitution.foreign.track import columns_of, read_track
 from restitution.impacts.find import find_impacts
 from restitution.stokes import MEASURED_SPEEDS
-from restitution.tables.reading import read_header, read_table
+from restitution.tables.reading import read_table
 from restitution.tables.schema import read_schema
 from restitution.tracks import Track
 
-QUANTITIES = {"gap_m": "trajectory", "velocity_m_s": "settling"}
-"""What a track may have beside the time, and the schema of its table."""
+
+def is_track(table: ForeignTable, how: Reading) -> bool:
+    """Whether a table is a track: it has the time, and either a position or a velocity."""
+    return columns_of(table, how.settings) is not None
 
 
-def is_track(header: list[str], how: Reading) -> bool:
-    """Whether a table is a track: it has the time, and either the gap or the velocity."""
-    names = {how.columns.get(name, name) for name in ("time_s", *QUANTITIES)} & set(header)
-    return len(names) == 2 and how.columns.get("time_s", "time_s") in names
-
-
-def from_track_file(path: str, how: Reading, digest: str) -> Observations:
+def from_track_file(table: ForeignTable, how: Reading, digest: str) -> Observations:
     """The impacts of a track in a file."""
-    track, conditions = track_of(path, how)
-    return from_track(track, conditions, how, path, digest)
+    track, conditions, notes = track_of(table, how)
+    o = from_track(track, conditions, how, table.file, digest)
+    return replace(o, notes=(*(f"{table.file}: {note}" for note in notes), *o.notes))
 
 
-def track_of(path: str, how: Reading) -> tuple[Track, Conditions]:
-    """The track in a file, and its conditions: the caller's, or those that its own columns state."""
-    conditions = how.conditions or _conditions_of_track(path)
-    header = read_header(path)
-    value = next(name for name in QUANTITIES if how.columns.get(name, name) in header)
-    columns = {name: how.columns.get(name, name) for name in ("time_s", value)}
-    return Track.from_table(read_table(path, datasets.schema(QUANTITIES[value]), columns)), conditions
+def track_of(table: ForeignTable, how: Reading) -> tuple[Track, Conditions, tuple[str, ...]]:
+    """The track in a file, its conditions (the caller's, or those of its own columns), and how it was read."""
+    conditions = how.conditions or _conditions_of_track(table)
+    read = read_track(table, how.settings, conditions)
+    return read.track(), conditions, (*([f"read: {read.reading}"] if read.reading else []), *read.notes)
 
 
 def from_track(track: Track, conditions: Conditions, how: Reading, name: str, digest: str) -> Observations:
@@ -66,16 +63,17 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
     return check_physical(o, how)
 
 
-def _conditions_of_track(path: str) -> Conditions:
+def _conditions_of_track(table: ForeignTable) -> Conditions:
     """The conditions that a track's own columns state, the same in every row."""
-    header = read_header(path)
     needed = (*CONDITIONS, "e_dry")
-    if not set(needed) <= set(header):
+    if not set(needed) <= set(table.header):
         rule = f"is a track; fluid and sphere are needed: --conditions FILE, or the columns {', '.join(needed)}"
-        raise InputError(Defect(rule, file=path))
-    table = read_table(path, read_schema(SCHEMA), {name: name for name in needed})
+        raise InputError(Defect(rule, file=table.file))
+    stated = read_table(table.text(), read_schema(SCHEMA), {name: name for name in needed})
     for name in needed:
-        if table[name].nunique(dropna=False) != 1:
-            row = int((table[name] != table[name].iloc[0]).to_numpy().argmax()) + 2
-            raise InputError(Defect("must be the same in all rows of a track", file=path, row=row, field=name))
-    return conditions_of_row(table.iloc[0])
+        if stated[name].nunique(dropna=False) != 1:
+            row = table.rows[int((stated[name] != stated[name].iloc[0]).to_numpy().argmax())][0]
+            raise InputError(
+                Defect("must be the same in all rows of a track", file=table.file, row=row, field=name)
+            )
+    return conditions_of_row(stated.iloc[0])

@@ -68,7 +68,7 @@ def check(name: str, track: Track, contacts: Contacts, conditions: Conditions) -
     if track.value[lowest] > CENTRE_D * d:
         rule = (
             f"is the lowest of the record, {track.value[lowest] / d:.2g} d above the wall: is it the height of "
-            "the centre? The gap is that of the lowest point, less by d/2"
+            "the centre? The gap is that of the lowest point, less by d/2 (--point centre)"
         )
         raise InputError(Defect(rule, file=name, row=lowest + 2, field="gap_m", value=f"{track.value[lowest]:g}"))
 

@@ -28,12 +28,13 @@ from restitution.bounce import Release, terminal_speed
 from restitution.bounce.agreement import release_reaching
 from restitution.calibration.estimation.parameters import Normal
 from restitution.calibration.reading.reading import Reading
-from restitution.calibration.reading.track_impacts import track_of
+from restitution.calibration.reading.track_impacts import is_track, track_of
 from restitution.calibration.trajectories.recording_checks import begins_rising, bounces, check
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
+from restitution.foreign.table import read_foreign
+from restitution.foreign.track import what_is_needed
 from restitution.stokes import H_FILM
-from restitution.tables.reading import read_header
 from restitution.tracks import Track, contacts
 
 SCALE = 0.01
@@ -126,9 +127,12 @@ def read_recordings(paths: Sequence[str], how: Reading) -> list[Recording]:
 def read_recording(path: str, how: Reading) -> Recording:
     """One record: a file, or a shipped one by its name."""
     if Path(path).exists():
-        _check_header(path, how)
-        track, conditions = track_of(path, how)
-        return recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())
+        table = read_foreign(path, how.track.decimal)
+        if not is_track(table, how):
+            raise InputError(what_is_needed(table))
+        track, conditions, notes = track_of(table, how)
+        record = recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())
+        return replace(record, notes=(*(f"{path}: {note}" for note in notes), *record.notes))
     if path not in datasets.names():
         raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
     r = datasets.resource(path)
@@ -148,16 +152,6 @@ def read_recording(path: str, how: Reading) -> Recording:
         clock_rate=error.scale_sigma.get("time_s", 0.0),
         scale=error.scale_sigma.get("gap_m", SCALE),
     )
-
-
-def _check_header(path: str, how: Reading) -> None:
-    """Refuse a file without time and gap."""
-    header = read_header(path)
-    for name in ("time_s", "gap_m"):
-        own = how.columns.get(name, name)
-        if own not in header:
-            rule = f"is missing: a trajectory has time and gap; the header names {', '.join(header)}"
-            raise InputError(Defect(rule, file=path, row=1, field=own))
 
 
 def recording(

@@ -61,7 +61,7 @@ BAD_TRACKS = {
     "header only": b"time_s,gap_m\n",
     "wrong header": b"t,y\n0,1\n1,2\n2,3\n3,4\n",
     "text in a number": TRACK.replace("0.00350", "high").encode(),
-    "not a number": TRACK.replace("0.00350", "nan").encode(),
+    "all frames lost": b"time_s,gap_m\n" + b"".join(b"0.00%d,nan\n" % i for i in range(10)),
     "infinity": TRACK.replace("0.00350", "inf").encode(),
     "unsorted": TRACK.replace("0.004,", "0.400,").encode(),
     "duplicate time": TRACK.replace("0.004,", "0.002,").encode(),

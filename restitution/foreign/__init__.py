@@ -1,0 +1,17 @@
+"""Files as cameras, trackers, spreadsheets and solvers write them, made into the project's own tables.
+
+Read :mod:`~restitution.foreign.file_text` (lines), :mod:`~restitution.foreign.number_text` (numbers),
+:mod:`~restitution.foreign.layout` (cells), :mod:`~restitution.foreign.heading` (names and units),
+:mod:`~restitution.foreign.programs` (marks of programs), :mod:`~restitution.foreign.blocks` (many small tables in
+one file), :mod:`~restitution.foreign.table` (the table), :mod:`~restitution.foreign.settings` (what its numbers
+mean), :mod:`~restitution.foreign.track` (the track).
+
+Tables of the project's own are read strictly, by :mod:`restitution.tables`; what is read here ends there too, so
+that the same rules hold and name the same rows.
+"""
+
+from restitution.foreign.settings import Settings, read_settings
+from restitution.foreign.table import ForeignTable, read_foreign
+from restitution.foreign.track import ForeignTrack, read_track
+
+__all__ = ["ForeignTable", "ForeignTrack", "Settings", "read_foreign", "read_settings", "read_track"]

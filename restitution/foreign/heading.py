@@ -1,0 +1,238 @@
+"""The line that names the columns, among titles, comments, names of tracks and rows of units.
+
+The first row of data is the first whose cells are numbers where the body has numbers. The names are the nearest
+line above it, comments too, with one cell for each column and most of them words; a row of units between the two
+is read as such. Names above the names, each over several columns, are those of the tracks: ``mass_A/x``.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from restitution.errors import Defect, InputError
+from restitution.foreign.layout import SEPARATORS, Layout, Row, split
+from restitution.foreign.number_text import is_lost, is_number
+from restitution.foreign.programs import program_of
+from restitution.units import UnitError, quantity
+
+_NUMERIC = 0.5
+"""Part of the filled cells of a column of numbers that are numbers; the others are defects, named one by one."""
+_FRAMES = {"frame": "frame", "frames": "frame", "fr": "frame", "pixel": "px", "pixels": "px", "px": "px"}
+_LATTICE = {"d": "d"}
+_SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>s|ms|us|m|mm|cm|um|px)")
+_BRACKETS = re.compile(r"(?P<name>.*?)\s*[(\[](?P<unit>[^()\[\]]+)[)\]]")
+_SLASH = re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>[^/]+)")
+
+
+@dataclass
+class Heading:
+    """Names of the columns that have any content, by position; ``units`` are those that the file states."""
+
+    names: dict[int, str]
+    units: dict[int, str] = field(default_factory=dict)
+    line: int | None = None
+    """Line of the names; None where the file has none, and columns are called by their number."""
+    commented: bool = False
+    first_row: int = 0
+    """Which of the rows of the layout is the first of data."""
+
+
+def heading_of(layout: Layout) -> Heading:
+    """The heading of a text; raises :class:`InputError` where no line has one name a column."""
+    first = _first_data(layout)
+    data = layout.rows[first:]
+    if not data:  # a header and nothing below it
+        first = len(layout.rows)
+    width = max(layout.width, 1)
+    filled = [i for i in range(width) if any(i < len(row.cells) and row.cells[i] for row in data)]
+    above = [(row.line, row.cells) for row in layout.rows[:first]]
+    heading = Heading({i: str(i + 1) for i in filled}, first_row=first)
+    units: dict[int, str] = {}
+    for at in range(len(above) - 1, -1, -1):
+        line, cells = above[at]
+        if layout.vectors:
+            cells = next(iter(_vector_names(layout.lines[line - 1], layout)), cells)
+        placed = _placed(cells, width, filled)
+        if placed is None or not _are_words(placed):
+            continue
+        if all(_is_unit(text) for text in placed.values()) and at > 0 and not units:
+            units = {i: _bare(text) for i, text in placed.items()}
+            continue
+        known = next((j for j in range(at) if program_of(above[j][1]) and _placed(above[j][1], width, filled)), at)
+        line, placed = above[known][0], _placed(above[known][1], width, filled) or placed
+        heading.line, heading.names = line, _with_tracks(placed, [cells for _, cells in above[:known]])
+        if not units:  # rows below the names that are no data are for the strict reader to name
+            heading.first_row = at + 1
+        break
+    else:
+        units = _from_comments(heading, layout, width, filled, data[0].line if data else len(layout.lines) + 1)
+    if heading.line is None and above:
+        _refuse(layout, above[-1], width)
+    heading.names = {i: name for i, name in heading.names.items() if name or i in filled}
+    heading.units = {i: unit for i, name in heading.names.items() if (unit := unit_in(name))} | units
+    return heading
+
+
+def unit_in(name: str) -> str | None:
+    """The unit that the name of a column ends with: "t (s)", "gap [mm]", "y / mm", "y_mm", "gap/d"."""
+    return _apart(name)[1]
+
+
+def without_unit(name: str) -> str:
+    """The name of a column without the unit that it ends with."""
+    return _apart(name)[0]
+
+
+def _apart(name: str) -> tuple[str, str | None]:
+    for pattern in (_BRACKETS, _SLASH, _SUFFIX):
+        if (match := pattern.fullmatch(name)) and _is_unit(match["unit"]):
+            return match["name"], _bare(match["unit"])
+    return name, None
+
+
+def _first_data(layout: Layout) -> int:
+    """Which row is the first of data; the number of rows where none is."""
+    numeric = _numeric_columns(layout)
+    for at, row in enumerate(layout.rows):
+        cells = [row.cells[i] for i in numeric if i < len(row.cells)]
+        numbers = sum(map(is_number, cells))
+        filled = sum(1 for cell in cells if not is_lost(cell))
+        if numbers and 2 * numbers > filled and len(row.cells) > 1:
+            return at
+    return len(layout.rows)
+
+
+def _numeric_columns(layout: Layout) -> list[int]:
+    """Columns whose cells are mostly numbers in the later half of the body."""
+    rows = [row.cells for row in layout.body if len(row.cells) == layout.width]
+    rows = rows[len(rows) // 2 :]
+    columns = []
+    for i in range(layout.width):
+        cells = [row[i] for row in rows if not is_lost(row[i])]
+        if cells and sum(map(is_number, cells)) >= _NUMERIC * len(cells):
+            columns.append(i)
+    return columns
+
+
+def _placed(cells: list[str], width: int, filled: list[int]) -> dict[int, str] | None:
+    """Cells of a line above the data by column: one for each column, or one for each that has any content."""
+    while len(cells) > width and not cells[-1]:
+        cells = cells[:-1]
+    if len(cells) == width:
+        return dict(enumerate(cells))
+    named = list(cells)
+    while named and not named[-1]:
+        named.pop()
+    if len(named) == len(filled) and filled:
+        return dict(zip(filled, named, strict=True))
+    enough = 1 < len(named) <= width and set(filled) <= set(range(len(named)))
+    return dict(enumerate(named)) if enough else None
+
+
+def _are_words(placed: dict[int, str]) -> bool:
+    texts = [text for text in placed.values() if text]
+    return len(texts) > 0 and sum(map(is_number, texts)) < 0.5 * len(texts)
+
+
+def _from_comments(heading: Heading, layout: Layout, width: int, filled: list[int], before: int) -> dict[int, str]:
+    """Names in the last comment above the data that has one for each column, however that line is separated.
+
+    Returns the units of a comment below them.
+    """
+    units: dict[int, str] = {}
+    for line, text in reversed([c for c in layout.comments if c[0] < before]):
+        placed = _names_in(text, layout, width, filled)
+        if placed is None:
+            continue
+        if not units and all(_is_unit(name) for name in placed.values()):
+            units = {i: _bare(name) for i, name in placed.items()}
+            continue
+        heading.names, heading.line, heading.commented = placed, line, True
+        return units
+    return {}
+
+
+def _names_in(text: str, layout: Layout, width: int, filled: list[int]) -> dict[int, str] | None:
+    """The names in a comment by column; its sign may be the first of them. None if it has none."""
+    for cells in _cuts(text, layout):
+        for named in (cells, ["#", *cells]):
+            placed = _placed(named, width, filled)
+            if placed is not None and _are_words(placed) and all(placed.get(i) for i in filled):
+                return placed
+    return None
+
+
+def _cuts(text: str, layout: Layout) -> list[list[str]]:
+    """Ways to cut a comment into names, the separator of the data first; brackets stay with their word."""
+    if layout.vectors:
+        return _vector_names(text, layout)
+    together = re.sub(r"\s+([(\[])", r"\1", text)
+    ways = [layout.separator, *(s for s in SEPARATORS if s != layout.separator)]
+    cuts = [split(line, separator) for separator in ways for line in (text, together)]
+    return [cells for cells in cuts if len(cells) > 1 and not cells[0].endswith((",", ";"))]
+
+
+def _vector_names(text: str, layout: Layout) -> list[list[str]]:
+    """Names of a row of vectors: "position" over (1 2 3) becomes position_x, position_y, position_z."""
+    groups = re.findall(r"\([^()]*\)|[^\s()]+", next(line for line in reversed(layout.lines) if line.strip()))
+    sizes = [len(group.strip("()").split()) for group in groups]
+    words = re.findall(r"\([^()]*\)|[^\s()]+", text)
+    words = ["Time", *words[1:]] if words[:1] == ["Probe"] else words
+    if len(words) != len(sizes):
+        return []
+    names: list[str] = []
+    for word, size in zip(words, sizes, strict=True):
+        parts = word.strip("()").split()
+        names += parts if len(parts) == size else [f"{word}_{axis}" for axis in "xyzabcdef"[:size]]
+    return [names]
+
+
+def _with_tracks(names: dict[int, str], above: list[list[str]]) -> dict[int, str]:
+    """Names of columns under those of tracks, the nearest line first, until no name stands for two columns.
+
+    The first column is the time that all share, or that of the first track; it keeps its name.
+    """
+    result = dict(names)
+    for cells in reversed(above):
+        if len(set(result.values())) == len(result) or any(map(is_number, filter(None, cells))):
+            break
+        track = ""
+        for i, name in result.items():
+            track = cells[i] if i < len(cells) and cells[i] else track
+            result[i] = f"{track}/{name}" if track and name and i else name
+    return result
+
+
+def _is_unit(text: str) -> bool:
+    text = _bare(text)
+    if not text or text in _FRAMES.values() or text in _LATTICE:
+        return True
+    if text[0].isdigit():
+        return False
+    try:
+        quantity(text)
+    except UnitError:
+        return text.lower() in ("-", "1", "quality")
+    return True
+
+
+def _bare(text: str) -> str:
+    bare = text.strip().strip("()[]").strip()
+    return _FRAMES.get(bare.lower(), bare)
+
+
+def _refuse(layout: Layout, last: tuple[int, list[str]], width: int) -> None:
+    """One line for all rows whose width is not that of the names."""
+    line, cells = last
+    named = [cell for cell in cells if cell]
+    hint = ""
+    if layout.separator == "," and width > len(named):
+        hint = "; is the decimal sign a comma?" if width == 2 * len(named) else "; commas within numbers?"
+    rule = f"names {len(named)} columns where the rows below have {width} values{hint}"
+    raise InputError(Defect(rule, file=layout.file, row=line))
+
+
+def data_rows(layout: Layout, heading: Heading) -> list[Row]:
+    """The rows of data."""
+    return layout.rows[heading.first_row :]

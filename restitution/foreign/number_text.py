@@ -1,0 +1,65 @@
+"""Numbers as programs and spreadsheets write them, made plain: typographic minus, D exponents, decimal commas."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Literal
+
+from restitution.tables.csv_text import NUMBER
+
+Decimal = Literal[".", ","]
+
+_TYPOGRAPHIC = str.maketrans(dict.fromkeys("−–‒﹣－", "-") | {"\u00a0": " ", "\u202f": " ", "\u2009": " "})
+_EXPONENT = re.compile(r"([+-]?(?:\d+[.,]?\d*|[.,]\d+))[dDqQ]([+-]?\d+)", re.ASCII)
+_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_POINT = re.compile(r"[+-]?(\d+\.\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_THOUSANDS = re.compile(
+    r"[+-]?\d{1,3}((,\d{3})+\.\d*|(\.\d{3})+,\d*|(,\d{3}){2,}|(\.\d{3}){2,}|([ '’]\d{3})+([.,]\d*)?)", re.ASCII
+)
+_AS_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+_LOST = {"", "na", "n/a", "#n/a", "null", "none", "-", "--", "nan", "+nan", "-nan", "nan(ind)", "-nan(ind)"}
+
+
+def plain(cell: str, decimal: Decimal = ".") -> str:
+    """The cell as Python writes numbers; as it is where it is no number."""
+    if NUMBER.fullmatch(cell):
+        return cell  # most are
+    text = cell.translate(_TYPOGRAPHIC).strip()
+    text = _EXPONENT.sub(r"\1e\2", text) if _EXPONENT.fullmatch(text) else text
+    if decimal == "," and _COMMA.fullmatch(text):
+        text = text.replace(",", ".")
+    return text if NUMBER.fullmatch(text) else cell
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number under either decimal sign."""
+    return bool(NUMBER.fullmatch(plain(cell, ",")))
+
+
+def is_lost(cell: str) -> bool:
+    """Whether a cell says that there is no value: empty, NaN, N/A."""
+    return cell.strip().lower() in _LOST
+
+
+def has_thousands(cell: str) -> bool:
+    """Whether a cell is a number with thousands separators, which are never guessed away."""
+    return not NUMBER.fullmatch(cell) and bool(_THOUSANDS.fullmatch(cell.translate(_TYPOGRAPHIC).strip()))
+
+
+def decimal_of(cells: Iterable[str]) -> tuple[Decimal | None, str]:
+    """The decimal sign of the numbers among ``cells``; None and why where it is not clear.
+
+    A comma is a decimal one if any number shows it, as in 0,5 or 1,25. Where every comma has one to three digits
+    before it and three after, as in 1,234, it may stand for thousands.
+    """
+    texts = [plain(cell) for cell in cells]
+    commas = [text for text in texts if _COMMA.fullmatch(text)]
+    points = [text for text in texts if _POINT.fullmatch(text)]
+    if not commas:
+        return ".", ""
+    if points:
+        return None, f"has commas and points in its numbers, {commas[0]} and {points[0]}: thousands separators?"
+    if all(_AS_THOUSANDS.fullmatch(text) for text in commas):
+        return None, f"has numbers such as {commas[0]}: is the comma a decimal sign or for thousands?"
+    return ",", ""

@@ -1,0 +1,192 @@
+"""Any table of numbers as the strict reader takes it: names, plain cells by line, what the file says of itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import groupby
+from pathlib import Path
+
+from restitution.errors import Defect, InputError
+from restitution.foreign import blocks, programs
+from restitution.foreign.file_text import read_lines
+from restitution.foreign.heading import Heading, data_rows, heading_of, without_unit
+from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
+from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain
+from restitution.foreign.programs import Program
+from restitution.tables.csv_text import CsvText
+
+_MOST_NAMED = 20
+"""Particles that a message names."""
+
+
+@dataclass
+class ForeignTable:
+    """Cells of a file by line, numbers in them plain; ``units`` are those that the file states, by name."""
+
+    file: str
+    header: list[str]
+    rows: list[tuple[int, list[str]]]
+    units: dict[str, str] = field(default_factory=dict)
+    program: Program | None = None
+    named: bool = True
+    """Whether the file names its columns; else they are called by their number."""
+    form: str = ""
+    """How it is written, in words, where that is not names and commas."""
+
+    def text(self) -> CsvText:
+        """For the strict reader."""
+        return CsvText(self.file, self.header, self.rows)
+
+    def column(self, name: str) -> str | None:
+        """The column of that name, in whatever case, of the only track, or of that number; None if none is."""
+        lower = name.lower()
+        for fits in (
+            [own for own in self.header if own == name],
+            [own for own in self.header if own.lower() == lower],
+            [own for own in self.header if without_unit(own).lower() == lower],
+            [own for own in self.header if without_unit(own).lower().rpartition("/")[2] == lower],
+        ):
+            if len(fits) == 1:
+                return fits[0]
+        return self.header[int(name) - 1] if name.isdecimal() and 0 < int(name) <= len(self.header) else None
+
+    @property
+    def particle_column(self) -> str | None:
+        """The column that tells particles apart, if there is one."""
+        if self.program is not None and self.program.particle:
+            return self.column(self.program.particle)
+        for name in programs.PARTICLES:
+            own = self.column(name)
+            if own is not None and "/" not in own:
+                cells = [cells[self.header.index(own)] for _, cells in self.rows]
+                if len(set(cells)) <= len(cells) / 4:
+                    return own
+        return None
+
+    def particles(self) -> dict[str, int]:
+        """Particles or tracks by name, with the number of their rows."""
+        own = self.particle_column
+        if own is not None:
+            k, count = self.header.index(own), dict[str, int]()
+            for _, cells in self.rows:
+                count[_bare(cells[k])] = count.get(_bare(cells[k]), 0) + 1
+            return count
+        tracks = [
+            name.rpartition("/")[0] for name in self.header if name.rpartition("/")[2].lower() in ("x", "y", "z")
+        ]
+        return {track: len(self.rows) for track in dict.fromkeys(tracks) if track}
+
+    def of_particle(self, particle: str | None) -> ForeignTable:
+        """One of them; raises :class:`InputError` with the list of what there is where it is not clear which."""
+        known = self.particles()
+        if particle is None and len(known) <= 1:
+            return self
+        if particle not in known:
+            names = [f"{name} ({n} rows)" for name, n in list(known.items())[:_MOST_NAMED]]
+            more = f" and {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
+            which = "has several particles or tracks" if known else "names no particles"
+            rule = f"{which}; --particle takes one of: {', '.join(names)}{more}" if known else which
+            raise InputError(
+                Defect(rule, file=self.file, field="--particle" if particle else None, value=particle)
+            )
+        own = self.particle_column
+        if own is None:
+            keep = [i for i, name in enumerate(self.header) if name.rpartition("/")[0] in ("", particle)]
+            header = [self.header[i] for i in keep]
+            rows = [(line, [cells[i] for i in keep]) for line, cells in self.rows]
+            return ForeignTable(self.file, header, rows, self.units, self.program, self.named, self.form)
+        k = self.header.index(own)
+        rows = [(line, cells) for line, cells in self.rows if _bare(cells[k]) == particle]
+        return ForeignTable(self.file, self.header, rows, self.units, self.program, self.named, self.form)
+
+
+def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTable:
+    """The table of numbers in a file, however it is written.
+
+    Parameters
+    ----------
+    path : a table of text: commas, semicolons, tabs or spaces between columns; a LAMMPS dump; OpenFOAM's vectors.
+    decimal : the decimal sign, where the numbers leave it open.
+
+    Raises
+    ------
+    InputError : where it is no such table, or what its numbers are is not clear, with the row and what would help.
+    """
+    file = str(path)
+    lines = read_lines(path)
+    if blocks.is_lammps(lines):
+        return _of_blocks(file, *blocks.lammps(lines, file), programs.LAMMPS)
+    if blocks.is_kinovea(lines):
+        return _of_blocks(file, *blocks.kinovea(lines), programs.KINOVEA_TEXT)
+    layout = layout_of(lines, file, decimal)
+    heading = heading_of(layout)
+    names = list(heading.names.values())
+    titles = [row.cells for row in layout.rows[: heading.first_row] if row.line < (heading.line or 0)]
+    program = programs.program_of(names)
+    if program is None and programs.is_tracker(names, titles):
+        program = programs.TRACKER
+    if program is None and layout.vectors:
+        program = programs.OPENFOAM
+    rows = _rows(data_rows(layout, heading), list(heading.names), layout, file)
+    units = {heading.names[i]: unit for i, unit in heading.units.items() if i in heading.names}
+    return ForeignTable(file, names, rows, units, program, heading.line is not None, _form(layout, heading))
+
+
+def _of_blocks(file: str, names: list[str], rows: list[Row], program: Program) -> ForeignTable:
+    decimal = decimal_of(cell for row in rows for cell in row.cells[1:])[0] or "."
+    cut = [row for row in rows if len(row.cells) != len(names)]
+    if cut:
+        rule = f"has {len(cut[0].cells)} values where {len(names)} are named"
+        raise InputError(Defect(rule, file=file, row=cut[0].line))
+    plain_rows = [(row.line, [plain(cell, decimal) for cell in row.cells]) for row in rows]
+    return ForeignTable(file, names, plain_rows, program=program, form=program.name)
+
+
+def _rows(rows: list[Row], columns: list[int], layout: Layout, file: str) -> list[tuple[int, list[str]]]:
+    """The cells of the named columns; rows of another width are left for the strict reader to name."""
+    while rows and not any(rows[-1].cells):
+        rows = rows[:-1]
+    result = []
+    for row in rows:
+        cells = row.cells
+        if len(cells) > layout.width and not any(cells[layout.width :]):
+            cells = cells[: layout.width]
+        if len(cells) == layout.width:
+            cells = [cells[i] for i in columns]
+        result.append((row.line, [plain(cell, layout.decimal) for cell in cells]))
+    return result
+
+
+def _form(layout: Layout, heading: Heading) -> str:
+    """How the file is written, where it is not as the project's own tables are."""
+    words = []
+    if layout.separator != ",":
+        words.append("columns separated by " + SEPARATORS[layout.separator])
+    if layout.decimal == ",":
+        words.append("decimal commas")
+    if heading.line is not None and (heading.line > 1 or heading.commented):
+        words.append(f"names in line {heading.line}")
+    return ", ".join(words)
+
+
+def _bare(cell: str) -> str:
+    """A particle's name: 3.0 is 3."""
+    text = cell.strip()
+    return text.removesuffix(".0") if text.removesuffix(".0").isdigit() else text
+
+
+def lost_rows(table: ForeignTable, names: list[str]) -> list[int]:
+    """Which rows have no value in one of the columns."""
+    at = [table.header.index(name) for name in names]
+    return [k for k, (_, cells) in enumerate(table.rows) if len(cells) == len(table.header)
+            and any(is_lost(cells[i]) for i in at)]  # fmt: skip
+
+
+def in_words(lines: list[int]) -> str:
+    """Numbers of lines as ranges: "rows 62 to 71, 122"."""
+    parts = []
+    for _, run in groupby(enumerate(lines), key=lambda pair: pair[1] - pair[0]):
+        run_lines = [line for _, line in run]
+        parts.append(f"{run_lines[0]}" + (f" to {run_lines[-1]}" if len(run_lines) > 1 else ""))
+    shown = ", ".join(parts[:5]) + (f" and {len(parts) - 5} more places" if len(parts) > 5 else "")
+    return f"row{'s' if len(lines) > 1 else ''} {shown}"

@@ -1,0 +1,277 @@
+"""A track from a foreign table and what its numbers mean; all that is not known is asked for at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from restitution import datasets
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
+from restitution.foreign.programs import POSITIONS, TIMES
+from restitution.foreign.settings import Settings, Units
+from restitution.foreign.table import ForeignTable, in_words, lost_rows
+from restitution.tables.reading import read_table
+from restitution.tracks import Track, contacts
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Quantity = Literal["gap", "velocity"]
+COLUMNS: dict[Quantity, str] = {"gap": "gap_m", "velocity": "velocity_m_s"}
+"""The project's own names of the value of a track."""
+_SCHEMAS: dict[Quantity, str] = {"gap": "trajectory", "velocity": "settling"}
+_MOST_NAMED = 30
+"""Columns that a message names."""
+SURE = 0.6
+"""Likelihood below which a position counts as lost; the default of DeepLabCut."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Which columns of a file are the time and the value, and what the value is."""
+
+    time: str
+    value: str
+    quantity: Quantity
+
+
+@dataclass(frozen=True)
+class ForeignTrack:
+    """A track in SI, ``reading`` how it was read in one line (empty: as it stands), and notes on it."""
+
+    table: pd.DataFrame
+    reading: str
+    notes: tuple[str, ...]
+    unit: float
+    """What one of the file's values is in m or m/s."""
+
+    def track(self, sigma: float | None = None) -> Track:
+        """As a track; ``sigma`` is its noise in the file's unit, estimated if not given."""
+        return Track.from_table(self.table, None if sigma is None else sigma * self.unit)
+
+
+def columns_of(table: ForeignTable, settings: Settings) -> Columns | None:
+    """The columns of a track, by the settings, the project's own names, or the program's; None if it has none."""
+    program = table.program
+    time = settings.time or _own(table, "time_s") or _clock(table) or (program.time if program else None)
+    if time is None:
+        return None
+    if settings.velocity and settings.position:
+        rule = "is given beside a position: a track has one of them"
+        raise InputError(Defect(rule, file=table.file, field="velocity", value=settings.velocity))
+    position = settings.position or (None if settings.velocity else _own(table, "gap_m"))
+    velocity = settings.velocity or (None if position else _own(table, "velocity_m_s"))
+    if position is None and velocity is None and program is not None:
+        position = program.position
+    value, quantity = (velocity, "velocity") if velocity else (position, "gap")
+    if value is None:
+        return None
+    return Columns(_named(table, time), _named(table, value), quantity)  # type: ignore[arg-type]
+
+
+def _clock(table: ForeignTable) -> str | None:
+    """The program's column of times in seconds, if the file states their unit."""
+    own = table.column(table.program.clock) if table.program is not None and table.program.clock else None
+    return own if own is not None and table.units.get(own, "frame") != "frame" else None
+
+
+def _own(table: ForeignTable, name: str) -> str | None:
+    return name if name in table.header else None
+
+
+def _named(table: ForeignTable, name: str) -> str:
+    own = table.column(name)
+    if own is None:
+        rule = f"is missing; the header names {', '.join(table.header)}"
+        if not table.named:
+            rule = f"is missing: the file names no columns, they are called {', '.join(table.header)}"
+        raise InputError(Defect(rule, file=table.file, row=1, field=name))
+    return own
+
+
+def read_track(table: ForeignTable, settings: Settings, conditions: Conditions) -> ForeignTrack:
+    """The track in a table.
+
+    Parameters
+    ----------
+    table : the file.
+    settings : what the numbers mean, where the file does not say it.
+    conditions : the sphere's diameter, for positions of its centre and units of it.
+
+    Raises
+    ------
+    InputError : naming every option that is needed, or what is wrong with the rows.
+    """
+    table = table.of_particle(None if settings.particle is None else str(settings.particle))
+    columns = columns_of(table, settings)
+    if columns is None:
+        raise InputError(what_is_needed(table))
+    settings = _completed(table, settings, columns)
+    units = Units.of(settings, conditions)
+    time_unit = units.time(settings.time_unit or "s")
+    unit = (
+        units.length(settings.unit or "m")
+        if columns.quantity == "gap"
+        else units.speed(settings.unit or "m", time_unit)
+    )
+    kept, notes = _without_lost(table, columns)
+    names = {"time_s": columns.time, COLUMNS[columns.quantity]: columns.value}
+    scale = {"time_s": time_unit, COLUMNS[columns.quantity]: unit}
+    frames = read_table(kept.text(), datasets.schema(_SCHEMAS[columns.quantity]), names, scale)
+    level = _gap_from(frames, settings, conditions, unit, columns.quantity, table.file)
+    return ForeignTrack(frames, _in_words(table, settings, columns, level), notes, unit)
+
+
+def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Settings:
+    """The settings with what the file says; raises with all that neither says."""
+    program, ours = table.program, {"time_s": "s", "gap_m": "m", "velocity_m_s": "m/s"}
+    known = {} if program is None else program.units
+
+    def unit_of(name: str) -> str | None:
+        short = name.rpartition("/")[2].lower()
+        return ours.get(name) or table.units.get(name) or known.get(name.lower()) or known.get(short)
+
+    found = {
+        "time_unit": unit_of(columns.time),
+        "unit": unit_of(columns.value),
+        "direction": "down" if program is not None and program.down else None,
+        "point": "centre" if program is not None and program.centre else None,
+    }
+    completed = settings.over(Settings(**{k: v for k, v in found.items() if v is not None}))
+    needed = []
+    if completed.time_unit is None:
+        needed.append(f"--time-unit U of {columns.time} (s, ms, frame, 0.5ms, sqrt(d/g))")
+    elif "frame" in completed.time_unit and completed.frames_per_second is None:
+        needed.append(f"--fps N: frames a second, for {columns.time} counts frames")
+    if completed.unit is None:
+        needed.append(f"--unit U of {columns.value} (m, mm, px, 0.3mm, d)")
+    elif "px" in completed.unit and completed.pixel is None:
+        needed.append(f"--pixel LENGTH of one (0.125mm), for {columns.value} is in pixels")
+    if columns.quantity == "gap" and program is not None:
+        if completed.wall is None and program.down:
+            needed.append(f"--wall X: {columns.value} of the wall, or --wall rest: where the sphere comes to rest")
+        elif completed.point is None and completed.wall != "rest":
+            needed.append(f"--point centre or lowest: whose {columns.value} it is")
+    if needed:
+        what = f"is a file of {program.name}" if program is not None else "does not say what its numbers are"
+        raise InputError(Defect(f"{what}; say {'; '.join(needed)} (or --settings FILE)", file=table.file))
+    return completed
+
+
+def _without_lost(table: ForeignTable, columns: Columns) -> tuple[ForeignTable, tuple[str, ...]]:
+    """The rows that have a time and a position; a particle's frames in the order of time."""
+    lost = set(lost_rows(table, [columns.time, columns.value]))
+    quality = table.program.quality if table.program is not None else None
+    own = quality and table.column(f"{columns.value.rpartition('/')[0]}/{quality}".lstrip("/"))
+    if own:
+        k = table.header.index(own)
+        lost |= {i for i, (_, cells) in enumerate(table.rows) if _below(cells[k], SURE)}
+    if len(lost) == len(table.rows):
+        rule = f"has no row with both {columns.time} and {columns.value}"
+        raise InputError(Defect(rule, file=table.file))
+    rows = [row for i, row in enumerate(table.rows) if i not in lost]
+    if table.program is not None and table.program.particle:
+        at = table.header.index(columns.time)
+        rows.sort(key=lambda row: _number(row[1][at]))
+    notes: tuple[str, ...] = ()
+    if lost:
+        lines = [table.rows[i][0] for i in sorted(lost)]
+        one = len(lines) == 1
+        notes = (f"{len(lines)} frame{'' if one else 's'} without a position left out: {in_words(lines)}",)
+    return replace(table, rows=rows), notes
+
+
+def _below(cell: str, limit: float) -> bool:
+    value = _number(cell)
+    return np.isnan(value) or value < limit
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return np.nan
+
+
+def _gap_from(
+    frames: pd.DataFrame, settings: Settings, conditions: Conditions, unit: float, quantity: Quantity, file: str
+) -> float | None:
+    """Turn positions into gaps and velocities away from the wall; returns the level at rest where asked for."""
+    name = COLUMNS[quantity]
+    sign = -1.0 if settings.direction == "down" else 1.0
+    if quantity == "velocity":
+        if sign < 0:
+            frames[name] = -frames[name]
+        return None
+    if settings.wall == "rest":
+        heights = sign * frames[name]
+        level = contacts(Track.from_table(frames.assign(**{name: heights}))).level
+        if level is None:
+            rule = "the sphere does not come to rest in this record, so that the wall must be given by its place"
+            raise InputError(Defect(rule, file=file, field="--wall", value="rest"))
+        frames[name] = heights - level
+        return sign * level / unit
+    wall = settings.wall or 0.0
+    if sign < 0 or wall:
+        frames[name] = sign * (frames[name] - wall * unit)
+    if settings.point == "centre":
+        frames[name] -= conditions.sphere.radius
+    return None
+
+
+def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: float | None) -> str:
+    """How the numbers were taken, in one line; empty where they stand as the project's own tables have them."""
+    if (
+        columns.time == "time_s"
+        and columns.value in COLUMNS.values()
+        and not table.form
+        and not settings.over(Settings()).stated().keys() - {"time_unit", "unit"}
+        and settings.time_unit == "s"
+        and settings.unit in ("m", "m/s")
+    ):
+        return ""  # fmt: skip
+    time_unit = f"{settings.time_unit}"
+    if "frame" in time_unit:
+        time_unit += f" at {settings.frames_per_second:g} a second"
+    unit = f"{settings.unit}" + (f" of {settings.pixel}" if "px" in f"{settings.unit}" else "")
+    parts = [f"time from {columns.time!r} in {time_unit}", f"{columns.quantity} from {columns.value!r} in {unit}"]
+    if settings.direction == "down":
+        parts.append("growing towards the wall")
+    if columns.quantity == "gap":
+        if settings.wall == "rest":
+            parts.append(f"wall where it comes to rest, at {level:.6g}")
+        else:
+            parts.append(f"wall at {settings.wall or 0:g}")
+            parts.append("of the centre, less d/2" if settings.point == "centre" else "of the lowest point")
+    if table.program is not None:
+        parts.insert(0, table.program.name)
+    if table.form and table.form != (table.program.name if table.program else ""):
+        parts.insert(0, table.form)
+    if settings.particle is not None:
+        parts.append(f"particle {settings.particle}")
+    return "; ".join(parts)
+
+
+def what_is_needed(table: ForeignTable) -> Defect:
+    """That the columns of a track are not known, with the option that names them, guessed from their names."""
+    time = next((own for name in TIMES if (own := table.column(name))), None)
+    value = next((own for name in POSITIONS if (own := table.column(name)) and own != time), None)
+    header = ", ".join(table.header[:_MOST_NAMED]) + (" ..." if len(table.header) > _MOST_NAMED else "")
+    if not table.named:
+        columns = f"names no columns; they are {header}"
+        example = "--column time_s=1 --column gap_m=2"
+    else:
+        columns = f"the header ({header}) does not tell which columns are time and position"
+        example = f"--column time_s={_quoted(time or 'NAME')} --column gap_m={_quoted(value or 'NAME')}"
+    rule = (
+        f"{columns}: {example} (or velocity_m_s=NAME), with --time-unit s and --unit m or what they are in, and "
+        "--point centre where it is the height of the centre"
+    )
+    return Defect(rule, file=table.file)
+
+
+def _quoted(name: str) -> str:
+    return f"'{name}'" if any(sign in name for sign in " ()*#;&") else name

@@ -1,0 +1,83 @@
+"""Digitised plots as programs write them: European locales, names with commas, older projects, error bars."""
+
+import json
+
+import numpy as np
+import pytest
+
+from restitution.calibration import read
+from restitution.errors import InputError
+
+
+def exported(tmp_path, name, content):
+    path = tmp_path / name
+    path.write_text(content if isinstance(content, str) else json.dumps(content))
+    return read(path, stokes="st", speed="far")
+
+
+ST, E = (10.0, 50.0, 200.0), (0.25, 0.6125, 0.9)
+EUROPEAN = {
+    "semicolons": "10; 0,25\n50; 0,6125\n200; 0,9\n",
+    "tabs": "10\t0,25\n50\t0,6125\n200\t0,9\n",
+    "quotes": '"10", "0,25"\n"50", "0,6125"\n"200", "0,9"\n',
+}
+
+
+@pytest.mark.parametrize("kind", EUROPEAN)
+def test_exports_with_decimal_commas(tmp_path, kind):
+    impacts = exported(tmp_path, "plot.csv", EUROPEAN[kind])
+    np.testing.assert_allclose(impacts.St, ST)
+    np.testing.assert_allclose(impacts.e, E)
+
+
+def test_a_curve_of_another_digitizer_with_mapped_columns(tmp_path):
+    (tmp_path / "plot.csv").write_text('x, Curve1\n"10", "0,25"\n"50", "0,6125"\n"200", "0,9"\n')
+    impacts = read(tmp_path / "plot.csv", stokes="st", speed="far", columns={"stokes": "x", "e_eff": "Curve1"})
+    np.testing.assert_allclose(impacts.e, E)
+
+
+def test_names_of_data_sets_may_have_commas(tmp_path):
+    content = "steel, 4 mm,,glass, in oil, 6 mm,\nX,Y,X,Y\n10,0.25,20,0.3\n50,0.6125,,\n"
+    impacts = exported(tmp_path, "plot.csv", content)
+    assert list(impacts.labels["source"]) == ["steel, 4 mm", "glass, in oil, 6 mm", "steel, 4 mm"]
+
+
+CALIBRATION = [
+    {"px": 0, "py": 100, "dx": "0", "dy": "0"},
+    {"px": 100, "py": 100, "dx": "1000", "dy": "0"},
+    {"px": 0, "py": 100, "dx": "0", "dy": "0"},
+    {"px": 0, "py": 0, "dx": "0", "dy": "1"},
+]
+POINTS = [{"x": st / 10, "y": 100 * (1 - e)} for st, e in zip(ST, E, strict=True)]
+
+
+def test_a_project_of_version_3(tmp_path):
+    project = {"wpd": {
+        "version": [3, 8], "axesType": "XYAxes", "axesParameters": {"isLogX": False, "isLogY": False},
+        "calibration": CALIBRATION, "dataSeries": [{"name": "glass", "data": POINTS}],
+    }}  # fmt: skip
+    impacts = exported(tmp_path, "plot.json", project)
+    np.testing.assert_allclose(impacts.St, ST)
+    np.testing.assert_allclose(impacts.e, E)
+
+
+def test_ends_of_error_bars_are_no_impacts_and_unused_axes_no_obstacle(tmp_path):
+    points = [{**p, "tuple": i, "group": 0} for i, p in enumerate(POINTS)]
+    points += [{**p, "y": p["y"] - 8, "tuple": i, "group": 1} for i, p in enumerate(POINTS)]
+    project = {
+        "axesColl": [
+            {"name": "XY", "type": "XYAxes", "isLogX": False, "isLogY": False, "calibrationPoints": CALIBRATION},
+            {"name": "bars", "type": "BarAxes", "calibrationPoints": []},
+        ],
+        "datasetColl": [{"name": "glass", "axesName": "XY", "groupNames": ["mean", "top"], "data": points}],
+    }
+    impacts = exported(tmp_path, "plot.json", project)
+    np.testing.assert_allclose(impacts.e, E)
+    assert any("3 ends of error bars" in note for note in impacts.notes)
+
+
+@pytest.mark.parametrize("content", ["10,0.3\n50,0.6\n60\n70,0.7\n", "D,\nX,Y\n30,0.3,1\n60,0.6,2\n90,0.7,3\n"])
+def test_rows_that_are_no_pairs_are_refused_by_their_row(tmp_path, content):
+    with pytest.raises(InputError) as error:
+        exported(tmp_path, "plot.csv", content)
+    assert error.value.defects[0].row == 3
