@@ -7,8 +7,9 @@ that from the contact time, here it is only named.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -120,10 +121,34 @@ def contacts(track: Track) -> Contacts:
 
 def _minima(track: Track) -> list[tuple[int, int | None, int]]:
     """Contacts of a gap track: end of the approach, nearest frame, begin of the rebound."""
-    from scipy.signal import find_peaks
+    return [(i, i, i + 1) for i in lowest_points(track.value.tolist(), DETECTION * track.sigma)]
 
-    lowest = find_peaks(-track.value, prominence=DETECTION * track.sigma)[0]
-    return [(int(i), int(i), int(i) + 1) for i in lowest]
+
+def lowest_points(value: Sequence[float], depth: float) -> list[int]:
+    """Where minima lie from which one must rise by ``depth`` on both sides to come to a lower place.
+
+    Those of ``scipy.signal.find_peaks`` by its prominence, without that package, which takes a second to load. A
+    flat minimum is counted at its middle, the ends of the record are none.
+    """
+    found = []
+    for left, right in _flat_minima(value):
+        highest = []
+        for side in (range(left, -1, -1), range(right, len(value))):
+            above = takewhile(value[left].__le__, map(value.__getitem__, side))
+            highest.append(max(above))
+        if min(highest) - value[left] >= depth:
+            found.append((left + right) // 2)
+    return found
+
+
+def _flat_minima(value: Sequence[float]) -> Iterator[tuple[int, int]]:
+    """First and last place of every run of equal values whose neighbours are both greater."""
+    left = 0
+    for i in range(1, len(value)):
+        if value[i] != value[left]:
+            if left > 0 and value[left - 1] > value[left] < value[i]:
+                yield left, i - 1
+            left = i
 
 
 def _reversals(track: Track) -> list[tuple[int, int | None, int]]:

@@ -15,8 +15,8 @@ Vertical motion, gap h > 0, velocity v = dh/dt:
 integrated, :mod:`~restitution.bounce.history` how the memory is kept, :mod:`~restitution.bounce.added_mass` what
 the wall does to the added mass, :mod:`~restitution.bounce.wake` what a rebound meets,
 :mod:`~restitution.bounce.agreement` how far a record is, :mod:`~restitution.bounce.sensitivity` what matters.
-:mod:`~restitution.bounce.model` puts them together from ``forces``, ``drive`` and ``tables``; ``ehd_solution``
-is a rebound of its own, of a soft sphere, that one of the laws tabulates.
+:mod:`~restitution.bounce.model` puts them together from ``forces``, ``drive`` and ``tables``, ``shared`` for many
+restitutions at once; ``ehd_solution`` is a rebound of its own, of a soft sphere, that one of the laws tabulates.
 """
 
 from restitution.bounce.agreement import distance_from_contact_d, release_of

@@ -11,6 +11,7 @@ velocities of the history force stay as they are, so that the jump acts on from 
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -163,34 +164,20 @@ def bounce(
     InputError : for input that cannot be used.
     IntegrationError : where the integration fails.
     """
-    closures = closures or Closures()
-    touch = closures.contact_gap(conditions)
-    _check(conditions, release, touch, end)
-    run = _Run(conditions, closures, touch, release, end, tolerance)
-    while run.t < end:
-        run.stretch()
+    run = Run(conditions, release, closures or Closures(), end, tolerance)
+    while run.fly_to_wall():
+        run.rebound()
     return run.trajectory()
 
 
-class _Run:
+class Run:
     """State of one integration and what it has recorded."""
 
-    def __init__(
-        self,
-        conditions: Conditions,
-        closures: Closures,
-        touch: float,
-        release: Release,
-        end: float,
-        tolerance: float,
-    ):
-        self.conditions, self.closures, self.touch, self.end, self.tolerance = (
-            conditions,
-            closures,
-            touch,
-            end,
-            tolerance,
-        )
+    def __init__(self, conditions: Conditions, release: Release, closures: Closures, end: float, tolerance: float):
+        touch = closures.contact_gap(conditions)
+        _check(conditions, release, touch, end)
+        self.conditions, self.closures, self.touch = conditions, closures, touch
+        self.end, self.tolerance = end, tolerance
         self.forces: Forces = forces(conditions, closures, end)
         self.edge = closures.film * conditions.sphere.diameter
         self.t, self.h, self.v = 0.0, float(release.gap), -float(release.speed)
@@ -207,8 +194,22 @@ class _Run:
         self.so_far = np.zeros(4)
         self.lowest_apex = closures.film_limit(conditions)
 
-    def stretch(self) -> None:
-        """Fly on to the next edge of the film, contact or end."""
+    def branch(self, closures: Closures) -> Run:
+        """The same state, from which another run goes on with what ``closures`` say of contacts to come."""
+        other = copy.copy(self)
+        other.closures, other.Z, other.so_far = closures, self.Z.copy(), self.so_far.copy()
+        other.impacts, other.rows, other.lost = [*self.impacts], [*self.rows], [*self.lost]
+        return other
+
+    def fly_to_wall(self) -> bool:
+        """Fly on to the next contact; False where the end comes first."""
+        while self.t < self.end:
+            if self._stretch():
+                return True
+        return False
+
+    def _stretch(self) -> bool:
+        """Fly on to the next edge of the film, contact or end; whether it is a contact."""
         low, high = (self.touch, self.edge) if self.inside else (self.edge, math.inf)
         if self.edge <= self.touch:
             low, high = self.touch, math.inf
@@ -218,22 +219,24 @@ class _Run:
             self.forces, self.wake, black_box, self.t, self.end, self.h, self.v, self.Z, low, high,
             self.dt, 3.0, self.tolerance, out, works,
         )  # fmt: skip
-        self.rows.append(out[:n])
+        self.rows.append(out[:n].copy())
         self.lost.append(self.so_far + np.hstack([works[:n], np.zeros((n, 1))]))
         self.so_far = self.lost[-1][-1].copy()
         self.t, self.h, self.v = out[n - 1]
         self.dt = 1e-4 * self.scale
+        if why == FELL and low == self.touch:
+            return True
         if why == ROSE:
             self.inside = False
-        elif why == FELL and low == self.touch:
-            self._impact()
         elif why == FELL:
             self.inside, self.touch = True, self.closures.contact_gap(self.conditions, -self.v)
         elif why != END:
             what = f"took more than {_ROWS} steps" if why == FULL else "could not solve a step"
             raise IntegrationError(f"the flight {what} near t = {self.t:.6g} s, gap {self.h:.3g} m")
+        return False
 
-    def _impact(self) -> None:
+    def rebound(self) -> None:
+        """Reverse the sphere at the wall, or let it rest there."""
         v_in, whole = -self.v, self._mass(self.touch)
         M, tail = whole - self.forces.tail, self.forces.tail
         v_out = self._restitution(v_in) * v_in
@@ -285,6 +288,7 @@ class _Run:
         return self.forces.mass + self.forces.tail + C * self.forces.fluid_mass
 
     def trajectory(self) -> Trajectory:
+        """What was recorded."""
         t, h, v = np.concatenate(self.rows).T
         energy = self._mass(h) / 2 * v**2 + self.forces.weight * h
         return Trajectory(t, h, v, self.impacts, self.conditions, self.closures, energy, np.concatenate(self.lost))

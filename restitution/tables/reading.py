@@ -8,6 +8,7 @@ be absent. pandas is imported only once the text of a table has been checked.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -214,6 +215,7 @@ def _column(f: Field, cells: list[str], scale: float) -> tuple[list, list[tuple[
     return values, list(wrong.items())
 
 
+@cache
 def _column_type(f: Field, scale: float) -> TypeAdapter:
     """The type of the filled cells of a column, made from the field's type and constraints."""
     c = f.constraints

@@ -23,6 +23,7 @@ weighs little; the offset then is integrated by quadrature.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -55,18 +56,29 @@ def residual_variance(slope: NDArray, e_sigma: NDArray, St_sigma: NDArray, corre
     return e_sigma**2 + from_St**2 - 2 * correlation * from_St * e_sigma
 
 
-class _Split(NamedTuple):
-    """Impacts with a rebound and those without: their places, and what of them no parameter changes."""
+class _Sources(NamedTuple):
+    """Of which source each impact is, those with a rebound and the censored ones apart."""
 
     seen: NDArray
     censored: NDArray
-    e: NDArray
-    upper: NDArray
-    source: NDArray
-    limited: NDArray
-    """Sources of the censored ones."""
     alone: NDArray
-    """Whether a censored one is the only one of its source."""
+    """Places of the censored ones that are the only one of their source."""
+    together: tuple[int, ...]
+    """Sources with several censored ones."""
+
+
+class _AtLaw(NamedTuple):
+    """What follows from the law, whatever scatter and offsets are: of all impacts, and of both kinds apart."""
+
+    f: NDArray
+    of_errors: NDArray
+    """Variance by the errors alone."""
+    r: NDArray
+    r_variance: NDArray
+    z: NDArray
+    """Limit less f, of the censored ones."""
+    z_variance: NDArray
+    finite: bool
 
 
 @dataclass(frozen=True)
@@ -88,30 +100,30 @@ class Likelihood:
 
     def __call__(self, values: Sequence[float] | NDArray) -> float:
         """-ln L; infinity where the law has no finite value."""
-        f, variance, omega = self.moments(np.asarray(values, float))
-        if not np.isfinite(f + variance).all():
+        values = np.asarray(values, float)
+        law, (tau, omega) = self._at_law(values), self._deviations(values)
+        if not (law.finite and math.isfinite(tau**2)):
             return np.inf
-        split = self._split
-        r, v, source = split.e - f[split.seen], variance[split.seen], split.source
-        z, v_z = split.upper - f[split.censored], variance[split.censored]
+        r, v = law.r, np.maximum(law.r_variance + tau**2, _LEAST_VARIANCE)
+        z, v_z = law.z, np.maximum(law.z_variance + tau**2, _LEAST_VARIANCE)
         if omega == 0:
             below = self._log_below(z, v_z).sum() if len(z) else 0.0
             return -float(self._log_density(r, v).sum() + below)
         if self.robust:
             return -sum(self._by_quadrature(s, r, v, z, v_z, omega) for s in range(self._n_sources))
         result = -float(self._log_density(r, v).sum())
-        W = np.bincount(source, 1 / v, self._n_sources)
-        S = np.bincount(source, r / v, self._n_sources)
+        sources, n = self._kinds, self._n_sources
+        W, S = np.bincount(sources.seen, 1 / v, n), np.bincount(sources.seen, r / v, n)
         shrink = omega**2 / (1 + omega**2 * W)
-        result += float(np.sum(0.5 * np.log1p(omega**2 * W) - 0.5 * shrink * S**2))
+        result += float((0.5 * np.log1p(omega**2 * W) - 0.5 * shrink * S**2).sum())
         if not len(z):
             return result
-        limited, alone = split.limited, split.alone
         # One limit in its source: the average of Phi over a normal offset is Phi again.
-        s = limited[alone]
+        alone = sources.alone
+        s = sources.censored[alone]
         result -= float(log_ndtr((z[alone] - shrink[s] * S[s]) / np.sqrt(v_z[alone] + shrink[s])).sum())
-        for s in dict.fromkeys(limited[~alone]):
-            here = limited == s
+        for s in sources.together:
+            here = sources.censored == s
             offset = shrink[s] * S[s] + np.sqrt(shrink[s]) * _NODES[:, None]
             below = log_ndtr((z[here] - offset) / np.sqrt(v_z[here])).sum(axis=1)
             result -= _log_sum_exp(below - 0.5 * _NODES**2) - _LOG_WEIGHT
@@ -119,19 +131,29 @@ class Likelihood:
 
     def moments(self, values: NDArray) -> tuple[NDArray, NDArray, float]:
         """F and the variance of each impact without the offset, and the standard deviation of the offsets."""
-        given = self._by_impact(values)
-        e_dry, tau, omega = given.pop("e_dry"), given.pop(SCATTER, 0.0), given.pop(OFFSET, 0.0)
-        f, of_errors = self._law(values, e_dry, given)
-        return f, np.maximum(of_errors + tau**2, _LEAST_VARIANCE), float(omega)
+        law, (tau, omega) = self._at_law(values), self._deviations(values)
+        return law.f, np.maximum(law.of_errors + tau**2, _LEAST_VARIANCE), omega
 
-    def _law(self, values: NDArray, e_dry: float | NDArray, given: Mapping) -> tuple[NDArray, NDArray]:
-        """The law, and the variance by the errors alone; kept while a search moves standard deviations only."""
-        key, kept, o = values[self._of_law].tobytes(), self._kept, self.observations
+    def _at_law(self, values: NDArray) -> _AtLaw:
+        """What follows from the law at these values; kept while a search moves scatter and offsets alone."""
+        key, kept = values[self._of_law].tobytes(), self._kept
         if key not in kept:
-            f, slope = self.model(self._St, e_dry, given)
             kept.clear()
-            kept[key] = f, residual_variance(slope, o.e_sigma, self._St_sigma, o.correlation)
+            kept[key] = self._evaluated(values)
         return kept[key]
+
+    def _evaluated(self, values: NDArray) -> _AtLaw:
+        given, o, seen = self._by_impact(values), self.observations, self._seen
+        e_dry = given.pop("e_dry")
+        f, slope = self.model(self._St, e_dry, {n: x for n, x in given.items() if n not in (SCATTER, OFFSET)})
+        variance = residual_variance(slope, o.e_sigma, self._St_sigma, o.correlation)
+        finite = bool(np.isfinite(f).all() and np.isfinite(variance).all())
+        return _AtLaw(f, variance, (o.e - f)[seen], variance[seen], (o.upper - f)[~seen], variance[~seen], finite)
+
+    def _deviations(self, values: NDArray) -> tuple[float, float]:
+        """Standard deviations of the scatter and of the offsets."""
+        tau, omega = (fixed if at is None else float(values[at]) for at, fixed in self._deviation_places)
+        return tau, omega
 
     def offsets(self, values: NDArray) -> dict[str, tuple[float, float]]:
         """Offset of each source, as far as the data tell: conditional mean and standard deviation."""
@@ -172,7 +194,7 @@ class Likelihood:
     def sources(self) -> NDArray:
         return self.observations.groups("source")[1]
 
-    @property
+    @cached_property
     def _n_sources(self) -> int:
         return len(self.source_names)
 
@@ -186,18 +208,20 @@ class Likelihood:
         return np.array([p.name not in (SCATTER, OFFSET) for p in self.parameters], bool)
 
     @cached_property
-    def _kept(self) -> dict[bytes, tuple[NDArray, NDArray]]:
+    def _kept(self) -> dict[bytes, _AtLaw]:
         return {}
 
     @cached_property
-    def _split(self) -> _Split:
-        seen, sources = self._seen, self.sources
-        limited = sources[~seen]
-        alone = np.bincount(limited, minlength=self._n_sources)[limited] == 1
-        return _Split(
-            np.flatnonzero(seen), np.flatnonzero(~seen), self.observations.e[seen], self.observations.upper[~seen],
-            sources[seen], limited, alone,
-        )  # fmt: skip
+    def _deviation_places(self) -> list[tuple[int | None, float]]:
+        """Where scatter and offset stand among the values, and what they are where they are not estimated."""
+        position = {p.name: j for j, p in enumerate(self.parameters)}
+        return [(position.get(name), float(self.fixed.get(name, 0.0))) for name in (SCATTER, OFFSET)]
+
+    @cached_property
+    def _kinds(self) -> _Sources:
+        seen, censored = self.sources[self._seen], self.sources[~self._seen]
+        several = np.bincount(censored, minlength=self._n_sources)[censored] > 1
+        return _Sources(seen, censored, np.flatnonzero(~several), tuple(dict.fromkeys(censored[several].tolist())))
 
     @cached_property
     def _St(self) -> NDArray:

@@ -6,11 +6,13 @@ bounds and priors. The search runs in the internal coordinates of :mod:`.paramet
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtr
 
 from restitution.calibration.estimation.parameters import Normal, Parameter, log_prior
 from restitution.errors import Defect, InputError
@@ -78,9 +80,10 @@ def maximise(
     measured = any(isinstance(p.prior, Normal) for p in parameters)
 
     def function(x: NDArray) -> float:
-        if not np.isfinite(x).all():
+        given = x.tolist()
+        if not all(map(math.isfinite, given)):
             return HUGE
-        values = np.array([out(v) for out, v in zip(outward, x, strict=True)])
+        values = np.array([out(v) for out, v in zip(outward, given, strict=True)])
         total = negative_log(values) - (log_prior(parameters, values, every=False) if measured else 0.0)
         return total if total < HUGE else HUGE
 
@@ -132,12 +135,10 @@ def _step(p: Parameter, x: float) -> float:
 
 def _interval(minuit, p: Parameter, rise: float | None) -> tuple[tuple[float, float], tuple[bool, bool]]:
     """Where the profile of -2 ln L has risen by ``rise`` on both sides of the maximum, or the bounds."""
-    from scipy.stats import chi2
-
     if rise is None:
         return (np.nan, np.nan), (False, False)
     # MINUIT takes a confidence level; this is the one whose chi^2 quantile is the rise.
-    minuit.minos(p.name, cl=float(chi2.cdf(rise, 1)))
+    minuit.minos(p.name, cl=float(chdtr(1, rise)))
     minos = minuit.merrors[p.name]
     best = minuit.values[p.name]
     ends, open_ends = [], []

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtri, stdtrit
 
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER
 from restitution.calibration.estimation.maximum import LEVELS
@@ -167,10 +168,8 @@ class Evaluation:
 
 def quantile(level: float, freedom: float) -> float:
     """Half the width of a central interval of Student's t, or of the normal, in standard errors."""
-    from scipy.stats import norm, t
-
     half = 0.5 * (1 + level)
-    return float(norm.ppf(half) if np.isinf(freedom) else t.ppf(half, freedom))
+    return float(ndtri(half) if np.isinf(freedom) else stdtrit(freedom, half))
 
 
 def _half_width(result: FitResult, name: str, level: float) -> float:

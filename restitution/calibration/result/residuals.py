@@ -6,6 +6,7 @@ import math
 from typing import Literal
 
 import numpy as np
+from scipy.special import chdtrc
 
 from restitution.calibration.estimation.fitting import Fit
 from restitution.calibration.estimation.likelihood import SCATTER
@@ -78,8 +79,6 @@ def points_of(fit: Fit) -> tuple[Point, ...]:
 
 
 def goodness_of(fit: Fit) -> Goodness:
-    from scipy.stats import chi2
-
     likelihood, o = fit.likelihood, fit.likelihood.observations
     values = fit.maximum.values
     names = [p.name for p in fit.maximum.parameters]
@@ -97,7 +96,7 @@ def goodness_of(fit: Fit) -> Goodness:
         censored=int((~seen).sum()),
         chi_square=chi_square,
         degrees_of_freedom=free,
-        p_value=float(chi2.sf(chi_square, free)) if known and free > 0 else None,
+        p_value=float(chdtrc(free, chi_square)) if known and free > 0 else None,
         largest_pull=float(np.max(np.abs(r / np.sqrt(variance[seen])))),
         log_likelihood=-float(fit.maximum.negative_log),
         log_likelihood_of="restricted maximum" if fit.restricted else "maximum",

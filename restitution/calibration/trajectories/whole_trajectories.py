@@ -24,9 +24,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.bounce import Closures, IntegrationError, OwnWake, Trajectory, bounce, terminal_speed
+from restitution.bounce import Closures, Trajectory
 from restitution.bounce.agreement import agreement
 from restitution.calibration.trajectories.flight_map import expand_about
+from restitution.calibration.trajectories.flights import Flights, fall_speed, flight
 from restitution.calibration.trajectories.likelihood import Marginal, Noise, RecordLikelihood
 from restitution.calibration.trajectories.recordings import Recording
 from restitution.calibration.trajectories.unknowns import restitution_name
@@ -34,8 +35,6 @@ from restitution.errors import Defect, InputError
 from restitution.impacts.find import find_impacts
 from restitution.stokes import H_FILM, Speed, convention
 
-TOLERANCE = 1e-5
-"""Relative error of an integration step; the trajectory is then within 1e-4 d of the converged one."""
 _ROUNDS = 10
 """Maps about better and better centres before the estimate is given up."""
 _E_STEP = 0.02
@@ -151,14 +150,15 @@ def whole_trajectories(records: Sequence[Recording], wake: bool) -> list[WholeTr
 
 def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
     """One record under the model."""
-    centre = _first_guess(r, wake)
+    integrate = Flights(r, wake)
+    centre = _first_guess(r, integrate)
     steps = np.full(len(centre), _E_STEP)
     steps[0] = min(r.start.prior.sigma, _START_STEP * r.start.prior.mean)
     noise, eta, narrow = Noise.typical(r), None, False
     for _ in range(_ROUNDS):
         centre[1:] = np.clip(centre[1:], steps[1:], 1 - steps[1:])
-        before = {"height": 0.0, "speed": -centre[0], "impact": -_fall_speed(r)}[r.start.kind]
-        flights = expand_about(lambda x: integrate(r, x, wake), centre, steps, len(centre), before)
+        before = {"height": 0.0, "speed": -centre[0], "impact": -fall_speed(r)}[r.start.kind]
+        flights = expand_about(integrate, centre, steps, len(centre), before)
         if flights.flights < len(centre):  # a last bounce so low that the model has none, or not in all of the map
             if flights.flights < 2:
                 raise InputError(Defect("the model does not bounce where the record does", file=r.name))
@@ -183,14 +183,14 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
             steps, narrow = np.clip(likelihood.named(own).flight, 0.02 * steps, steps), True
     else:
         raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", file=r.name))
-    return _summary(r, wake, likelihood, m)
+    return _summary(r, integrate, likelihood, m)
 
 
-def _summary(r: Recording, wake: bool, likelihood: RecordLikelihood, m: Marginal) -> WholeTrajectory:
+def _summary(r: Recording, integrate: Flights, likelihood: RecordLikelihood, m: Marginal) -> WholeTrajectory:
     """The numbers, and a direct integration at the estimate."""
     eta, C = m.moments()
     values, sigma = likelihood.values(eta), likelihood.prior[1]
-    path = integrate(r, likelihood.named(values).flight, wake)
+    path = integrate(likelihood.named(values).flight)
     flights = likelihood.model(values)
     time = likelihood.own_time(values, flights)
     inside = (time > 0) & (time < flights.contacts[-1])
@@ -198,7 +198,7 @@ def _summary(r: Recording, wake: bool, likelihood: RecordLikelihood, m: Marginal
     residual = r.gap_m - likelihood.predict(values)
     after = time >= flights.contacts[1]
     return WholeTrajectory(
-        r, wake, likelihood, likelihood.names, values, C * np.outer(sigma, sigma),
+        r, integrate.wake, likelihood, likelihood.names, values, C * np.outer(sigma, sigma),
         _log_moments(likelihood.noise.sigma_u, m.weights), _log_moments(likelihood.noise.tau, m.weights),
         m.log, path,
         float(np.max(away, initial=0.0) / r.sigma),
@@ -213,30 +213,7 @@ def _log_moments(values: NDArray, weights: NDArray) -> tuple[float, float]:
     return float(np.exp(mean)), float(np.sqrt(max(weights @ (ln - mean) ** 2, 0.0)))
 
 
-def integrate(r: Recording, x: NDArray, wake: bool) -> Trajectory:
-    """The trajectory of a record with ``x``: what is open at its start, and the restitution of each bounce."""
-    closures = Closures(measured=tuple(map(float, np.clip(x[1:], 0, 1))), wake=OwnWake() if wake else None)
-    return _fly(r, float(x[0]), closures)
-
-
-def _fly(r: Recording, start: float, closures: Closures) -> Trajectory:
-    release = r.start.release(start)
-    end = 4 * np.ptp(r.time_s) + 3 * release.gap / max(release.speed, _fall_speed(r))
-    try:
-        path = bounce(r.conditions, release, closures, float(end), TOLERANCE)
-    except IntegrationError as error:
-        raise InputError(Defect(str(error), file=r.name)) from None
-    if not path.impacts:
-        raise InputError(Defect("the model does not reach the wall within the record", file=r.name))
-    return path
-
-
-def _fall_speed(r: Recording) -> float:
-    """The scale of an approach's speed: terminal, or that of a free fall over a diameter."""
-    return min(terminal_speed(r.conditions), math.sqrt(r.conditions.free_fall * r.conditions.sphere.diameter))
-
-
-def _first_guess(r: Recording, wake: bool) -> NDArray:
+def _first_guess(r: Recording, integrate: Flights) -> NDArray:
     """Start at its prior, and for each bounce the restitution whose flight is nearest to the frames."""
     from scipy.optimize import minimize_scalar
 
@@ -250,7 +227,7 @@ def _first_guess(r: Recording, wake: bool) -> NDArray:
         time, gap = r.time_s[here] - touch, r.gap_m[here]
 
         def misfit(e: float, time: NDArray = time, gap: NDArray = gap) -> float:
-            path = integrate(r, np.array([begin, *known, e]), wake)
+            path = integrate(np.array([begin, *known, e]))
             if len(path.impacts) <= len(known):
                 return float(np.sum(gap**2) / d**2)
             after = path.gap(path.impacts[len(known)].time_s + time)
@@ -267,7 +244,7 @@ def distance_d(trajectory: WholeTrajectory, closures: Closures) -> tuple[Traject
     The clocks are brought together on the approach alone (:func:`restitution.bounce.agreement.agreement`).
     """
     r = trajectory.recording
-    path = _fly(r, float(trajectory.likelihood.named(trajectory.mean).start), closures)
+    path = flight(r, float(trajectory.likelihood.named(trajectory.mean).start), closures)
     apexes = path.apexes()
     return path, agreement(path, r.track).rms_d, float(apexes[0]) if len(apexes) else 0.0
 

@@ -9,6 +9,7 @@ from restitution import datasets, laws
 from restitution.bounce import Closures, OwnWake, Release, bounce, terminal_speed
 from restitution.bounce.agreement import agreement, release_of
 from restitution.bounce.sensitivity import forces_off
+from restitution.bounce.shared import SharedFlights
 from restitution.bounce.wake import left_behind
 from restitution.conditions import Conditions
 from restitution.errors import InputError
@@ -31,6 +32,17 @@ def changed(**sphere):
 def drop(name, closures):
     resource = datasets.resource(name)
     return bounce(resource.conditions, Release(resource.quoted["release_gap_m"]), closures, end=0.6)
+
+
+@pytest.mark.parametrize("wake", [None, OwnWake()])
+def test_flights_that_share_their_beginning_are_those_flown_alone(wake):
+    """To the last bit, whatever was flown before; a bounce so low that the sphere rests ends both."""
+    shared = SharedFlights(GONDRET, RELEASE, Closures(measured=(), wake=wake), 0.3, 1e-6)
+    for e in ((0.8, 0.7), (0.8, 0.6, 0.5), (0.8,), (0.75, 0.6), (0.8, 0.6, 0.0), (0.8, 0.7), ()):
+        path, alone = shared(e), bounce(GONDRET, RELEASE, Closures(measured=e, wake=wake), 0.3, 1e-6)
+        assert path.impacts == alone.impacts
+        for name in ("time_s", "gap_m", "velocity_m_s", "energy", "lost"):
+            np.testing.assert_array_equal(getattr(path, name), getattr(alone, name))
 
 
 @pytest.mark.parametrize("name", ["eq4_exponential", "legendre_2005", "two_way_lubrication", "eq4_rational"])

@@ -17,9 +17,10 @@ from restitution.calibration.reading.reading import Reading
 from restitution.calibration.result.fit_result import read_fit
 from restitution.calibration.trajectories.correlated_noise import gram_matrices
 from restitution.calibration.trajectories.fit import law_fit, observations
+from restitution.calibration.trajectories.flights import Flights
 from restitution.calibration.trajectories.recordings import read_recordings, recording
 from restitution.calibration.trajectories.synthetic import Filming, K, draw, filmed
-from restitution.calibration.trajectories.whole_trajectories import integrate, whole_trajectory
+from restitution.calibration.trajectories.whole_trajectories import whole_trajectory
 from restitution.cli import main
 from restitution.errors import InputError
 from restitution.tracks import Track
@@ -90,7 +91,7 @@ def test_map_is_the_integrated_trajectory_near_its_centre(noisy):
     _, _, found = noisy
     flights = found.likelihood.flights
     x = flights.centre + flights.steps * np.array([0.8, -0.9, 0.7, -0.8])
-    path, near = integrate(found.recording, x, False), flights.expand(x)
+    path, near = Flights(found.recording, False)(x), flights.expand(x)
     time = np.linspace(0, near.contacts[-1], 300)
     # A third of the error of a reading, 1e-5 m, the time that the sphere takes for that, and a third of the
     # smallest error that an impact speed has in a shipped record, 8e-4.
