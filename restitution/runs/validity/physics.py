@@ -24,6 +24,7 @@ import pandas as pd
 from restitution import datasets
 from restitution.cases import reading as case_files
 from restitution.cases.case import Case
+from restitution.errors import InputError
 from restitution.files import write_whole
 from restitution.runs.filmed import simulated_impacts
 from restitution.runs.resolved import ResolvedRun, kernel_folder
@@ -93,7 +94,7 @@ def departures(show: Callable[[str], None] | None = None) -> tuple[str, ...]:
     if show is not None:
         show("the program is not the one that made the kept runs: checks by short probe cases what it computes")
     departing = tuple(compare(content["numbers"], probe_numbers()))
-    with suppress(Exception):  # a verdict that cannot be kept is found again
+    with suppress(OSError, InputError):  # a verdict that cannot be kept is found again
         verdict.parent.mkdir(parents=True, exist_ok=True)
         write_whole(verdict, json.dumps(departing))
     return departing
