@@ -179,12 +179,21 @@ def test_what_was_saved_can_be_looked_at_without_a_simulation(tmp_path):
 
 
 def test_a_law_need_not_be_defined_everywhere(tmp_path):
-    """A list of measured rebounds ends; a description must not."""
-    measured = FilmRebound(lambda speed, count: (0.7, 0.6)[count] * speed / (speed > 1e-3), 0.5, 1e-4)
-    flow = Simulation((16, 16, 20), RATES, faces={"z": "no-slip"})
-    flow.add(Spheres([Sphere(3.0, 8.0, (8.0, 8.0, 9.0))], contact=measured))
-    flow.save(tmp_path / "state.h5")
-    flow.restore(tmp_path / "state.h5")
+    """A list of measured rebounds ends; a description need not, and still tells one list from another."""
+
+    def flow(*measured):
+        law = FilmRebound(lambda speed, count: measured[count] * speed / (speed > 1e-3), 0.5, 1e-4)
+        box = Simulation((16, 16, 20), RATES, faces={"z": "no-slip"})
+        box.add(Spheres([Sphere(3.0, 8.0, (8.0, 8.0, 9.0))], contact=law))
+        return box
+
+    flow(0.7, 0.6).save(tmp_path / "state.h5")
+    again = flow(0.7, 0.6)
+    again.restore(tmp_path / "state.h5")
+    assert again.steps == 0
+    for other in ((0.7, 0.5), (0.7, 0.6, 0.5)):
+        with pytest.raises(InputError, match="contact"):
+            flow(*other).restore(tmp_path / "state.h5")
 
 
 # Everything that decides the motion of spheres
