@@ -12,6 +12,7 @@ import numpy as np
 
 from lbm import arguments
 from lbm.errors import DivergenceError, InputError
+from lbm.faces.records import AXES
 from lbm.flow import Flow
 from lbm.fluid import fields
 from lbm.fluid.stencil import CS2
@@ -207,6 +208,7 @@ class FieldOutput:
     every : steps from one file to the next.
     directory, stem : where, and the beginning of the files' names.
     scales : to write in SI; None for lattice units.
+    mirrors : axes such as "xy" at whose low faces, planes of symmetry, the other half is to be shown too.
 
     Attributes
     ----------
@@ -215,13 +217,14 @@ class FieldOutput:
     Notes
     -----
     Cell data ``density``, ``velocity`` and ``pressure``, c_s^2 (rho - 1) over that of the fluid at rest; field
-    data ``step`` and ``TimeValue``.
+    data ``step`` and ``TimeValue``. The origin is the low corner of the box, with or without mirror images.
     """
 
     every: int
     directory: Path | str
     stem: str = "flow"
     scales: Scales | None = None
+    mirrors: str = ""
     written: list[Path] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -233,19 +236,25 @@ class FieldOutput:
             raise InputError(
                 f"scales = {arguments.shown(self.scales)}: give lbm.Scales, or None for lattice units"
             )
+        if not isinstance(self.mirrors, str) or len(set(self.mirrors) & set(AXES)) != len(self.mirrors):
+            raise InputError(f"mirrors = {arguments.shown(self.mirrors)}: give axes, such as 'xy'")
 
     def __call__(self, flow: Flow) -> None:
         """Write one file."""
         path = Path(self.directory) / f"{self.stem}_{flow.steps:08d}.vtkhdf"
         rho, u = flow.fields()
         scales = self.scales or Scales(1.0, 1.0)
+        origin = np.zeros(3)
+        for axis in map(AXES.index, self.mirrors):
+            rho, u = fields.with_image(rho, axis), fields.with_image(u, axis)
+            origin[axis] = -flow.shape[axis] * scales.cell_m
         written = {
             "density": scales.si(rho, "density"),
             "velocity": scales.si(u, "velocity"),
             "pressure": scales.si(CS2 * (rho - 1), "pressure"),
         }
         now = scales.si(float(flow.steps), "time")
-        write_image(path, written, spacing=scales.cell_m, step=flow.steps, TimeValue=now)
+        write_image(path, written, scales.cell_m, origin, step=flow.steps, TimeValue=now)
         self.written.append(path)
 
 

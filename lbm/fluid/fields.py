@@ -10,7 +10,7 @@ from lbm.fluid.lattice import Lattice, incoming, lend, outgoing, row_starts
 from lbm.fluid.memory import load_cell
 from lbm.fluid.stencil import C, Q, W
 
-__all__ = ["SUMS", "plane_sums", "read", "read_cell", "sent_density", "write"]
+__all__ = ["SUMS", "plane_sums", "read", "read_cell", "sent_density", "with_image", "write"]
 
 SUMS = ("mass", "momentum_x", "momentum_y", "momentum_z", "kinetic_energy", "outside")
 
@@ -89,6 +89,16 @@ def read(lattice: Lattice, force=None) -> tuple[np.ndarray, np.ndarray]:
     u = np.empty((3, g.nz, g.ny, g.nx), lattice.dtype)
     _read(lattice.populations, g, lattice.rows, lattice.parity, half(force), rho, u)
     return rho.transpose(2, 1, 0), u.transpose(0, 3, 2, 1)
+
+
+def with_image(field: np.ndarray, axis: int) -> np.ndarray:
+    """A scalar (nx, ny, nz) or vector (3, nx, ny, nz) ``field`` behind its mirror image in the low face."""
+    along = field.ndim - 3 + axis
+    image = np.flip(field, along)
+    if field.ndim == 4:
+        image = image.copy()
+        image[axis] *= -1
+    return np.concatenate([image, field], along)
 
 
 def plane_sums(lattice: Lattice, force=None, density=(0.0, np.inf), top_speed=np.inf) -> np.ndarray:

@@ -15,7 +15,7 @@ from lbm.fluid.cache import kernel
 from lbm.fluid.fields import sent_density
 from lbm.fluid.lattice import outgoing
 from lbm.fluid.stencil import C, Q
-from lbm.spheres.surface import REACH, cut, inside, inside_any, surface_velocity, wrapped
+from lbm.spheres.surface import REACH, cut, image, inside, inside_any, surface_velocity, wrapped
 
 
 @kernel
@@ -58,9 +58,9 @@ def _exchange_plane(populations, grid, parity, scheme, surfaces, s, plane, sums)
                 if not inside(dx + C[k, 0], dy + C[k, 1], dz + C[k, 2], radius):
                     continue
                 if (
-                    wrapped(cell + C[k, 0], grid.nx, grid.x_low) < 0
-                    or wrapped(row + C[k, 1], grid.ny, grid.y_low) < 0
-                    or wrapped(plane + C[k, 2], grid.nz, grid.z_low) < 0
+                    image(cell + C[k, 0], grid.nx, grid.x_low, grid.x_high) < 0
+                    or image(row + C[k, 1], grid.ny, grid.y_low, grid.y_high) < 0
+                    or image(plane + C[k, 2], grid.nz, grid.z_low, grid.z_high) < 0
                 ):
                     continue  # the wall lies in between
                 if rho == 0.0:
@@ -84,7 +84,7 @@ def _exchange_plane(populations, grid, parity, scheme, surfaces, s, plane, sums)
 @njit
 def _solid_behind(grid, x, y, z, k, centres, radii):
     """Whether the cell behind (x, y, z), against c_k, lies inside a sphere."""
-    i = wrapped(x - C[k, 0], grid.nx, grid.x_low)
-    j = wrapped(y - C[k, 1], grid.ny, grid.y_low)
-    l = wrapped(z - C[k, 2], grid.nz, grid.z_low)  # noqa: E741
+    i = image(x - C[k, 0], grid.nx, grid.x_low, grid.x_high)
+    j = image(y - C[k, 1], grid.ny, grid.y_low, grid.y_high)
+    l = image(z - C[k, 2], grid.nz, grid.z_low, grid.z_high)  # noqa: E741
     return i >= 0 and j >= 0 and l >= 0 and inside_any(grid, i, j, l, centres, radii)

@@ -10,6 +10,9 @@
    of inertia of the displaced fluid: the last two terms cancel for all but changes from step to step, which in
    fluid of low viscosity would otherwise grow, the fluid having no pressure to pass on a torque at once.
 3. Cells that come free are filled (:mod:`lbm.spheres.spheres.refill`).
+
+A sphere whose centre lies on a free-slip face is the whole one, of which the box holds a half or a quarter
+(:mod:`lbm.spheres.symmetry`); masses, forces and tracks are those of the whole.
 """
 
 from __future__ import annotations
@@ -25,13 +28,14 @@ from lbm.bodies.body import Body
 from lbm.bodies.reflection import SCHEMES
 from lbm.errors import InputError
 from lbm.faces.records import FACES
-from lbm.fluid.lattice import BOUNCE, PERIODIC, Lattice
+from lbm.fluid.lattice import BOUNCE, PERIODIC, SLIP, Lattice
 from lbm.spheres.contact import Contact, Impact
 from lbm.spheres.exchange import exchange
 from lbm.spheres.film import Film
 from lbm.spheres.refill import refill
 from lbm.spheres.sampling import sampled
 from lbm.spheres.surface import REACH, Surfaces
+from lbm.spheres.symmetry import mirrored_axes, of_whole, refuse_asymmetric, refuse_asymmetric_spin
 from lbm.spheres.wall_motion import FRACTION, motion_at_wall
 
 Drive = Callable[[float, float], Sequence[float] | None]
@@ -156,12 +160,17 @@ class Spheres(Body):
         grid = lattice.grid
         faces = np.array(grid.faces)
         for s, (r, centre) in enumerate(zip(self.radii, self.centres, strict=True)):
-            if 2 * (r + REACH) > min(grid.shape):
+            mirrors = mirrored_axes(grid, centre)
+            if 2 * (r + REACH) > min(grid.shape * np.where(mirrors, 2, 1)):
                 raise InputError(f"sphere {s}: diameter {2 * r:g} cells in a box of {grid.shape}: enlarge the box")
             for face in np.flatnonzero(faces != PERIODIC):
                 gap = _gap(centre, r, face, grid.shape)
-                if gap < 0:
-                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {FACES[face]}")
+                if gap < 0 and not mirrors[face // 2]:
+                    hint = ", which may cut it through the centre only" if faces[face] == SLIP else ""
+                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {FACES[face]}{hint}")
+            refuse_asymmetric(mirrors, f"velocity of sphere {s}", self.velocities[s])
+            refuse_asymmetric(mirrors, "gravity", self.gravity)
+            refuse_asymmetric_spin(mirrors, f"spin of sphere {s}", self.spins[s])
             for other in range(s):
                 apart = self.centres[other] - centre
                 apart -= np.where(faces[::2] == PERIODIC, grid.shape * np.round(apart / grid.shape), 0.0)
@@ -174,7 +183,8 @@ class Spheres(Body):
         surfaces = Surfaces(self.centres, self.radii, self.velocities, self.spins)
         for s, sums in enumerate(self._sums):
             exchange(populations, grid, parity, self.scheme, surfaces, s, sums)
-            self.forces[s], self.torques[s] = np.add.reduce(sums[:, :3]), np.add.reduce(sums[:, 3:])
+            force, torque = np.add.reduce(sums[:, :3]), np.add.reduce(sums[:, 3:])
+            self.forces[s], self.torques[s] = of_whole(mirrored_axes(grid, self.centres[s]), force, torque)
         before = self.centres.copy()
         for s in range(len(self.radii)):
             self._move(s, float(step), grid)
@@ -189,6 +199,7 @@ class Spheres(Body):
         v = self.velocities[s].copy()
         if given is not None:
             new = arguments.vector("drive", given)
+            refuse_asymmetric(mirrored_axes(grid, self.centres[s]), "drive", new)
             self.centres[s] += 0.5 * (v + new)
         else:
             self._free = True

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from lbm.fluid.cache import inlined
-from lbm.fluid.lattice import PERIODIC
+from lbm.fluid.lattice import PERIODIC, SLIP
 from lbm.fluid.stencil import C
 
 REACH = math.sqrt(2.0)
@@ -42,6 +42,16 @@ def wrapped(i, n, low):
     if 0 <= i < n:
         return i
     return i % n if low == PERIODIC else -1
+
+
+@njit(forceinline=True)
+def image(i, n, low, high):
+    """Index of the cell that stands for cell ``i``, its mirror image beyond a free-slip face; -1 beyond others."""
+    if i < 0 and low == SLIP:
+        return -1 - i
+    if i >= n and high == SLIP:
+        return 2 * n - 1 - i
+    return wrapped(i, n, low)
 
 
 @njit(forceinline=True)

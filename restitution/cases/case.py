@@ -51,7 +51,8 @@ class Numerics(Record):
     """Grid, box and method of the resolved run.
 
     ``lattice_speed`` is what ``reference_speed`` (m/s; by default the speed of the drive) becomes in cells a step:
-    it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high.
+    it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high. With ``symmetry`` "quarter" two
+    mirrors meet in the axis of the fall, and a quarter of the box is computed for the whole.
     """
 
     cells_per_diameter: Positive
@@ -64,6 +65,7 @@ class Numerics(Record):
     precision: Literal["float32", "float64"] = "float32"
     rates: Literal["two-relaxation-times", "dhumieres2002"] = "two-relaxation-times"
     interpolation: Literal["linear", "central-linear"] = "linear"
+    symmetry: Literal["none", "quarter"] = "none"
 
 
 FilmForm = Literal["none", "lost_to_grid", "source_abstract_eq3", "nguyen_ladd_2002", "brenner_1961_difference"]

@@ -180,6 +180,12 @@ def _box(case: Case) -> Iterator[Finding]:
     n, gap = case.numerics, case.release.gap_d
     if n.width_d < 2:
         yield "numerics.width_d", f"{n.width_d:g}", "is too narrow: at least 2 diameters"
+    if n.symmetry == "quarter" and case.release.along:
+        yield (
+            "numerics.symmetry",
+            n.symmetry,
+            "needs a fall along the axis: leave release.along out, or take 'none'",
+        )
     if gap + 1 + HEADROOM_D > n.height_d:
         rule = (
             f"puts the top of the sphere at {gap + 1:g} d of numerics.height_d = {n.height_d:g}: "

@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import lbm
+from lbm.faces.records import AXES
 from lbm.fluid import cache
+from lbm.fluid.fields import with_image
 from lbm.observers import DivergenceGuard, FieldOutput
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError, StoppedError
@@ -159,7 +161,7 @@ class ResolvedRun:
         """An observer that writes the flow for ParaView."""
         interval = self.case.run.snapshot_interval
         steps = _LONGEST_RUN if interval is None else max(1, round(interval / self.step_s))
-        return FieldOutput(steps, folder, self.case.name, self.flow.scales)
+        return FieldOutput(steps, folder, self.case.name, self.flow.scales, self.setup.mirrors)
 
     def motion(self) -> pd.DataFrame:
         """Every step so far in SI: ``time_s``, ``gap_m``, position, velocity, spin, force and torque of the fluid.
@@ -184,15 +186,19 @@ class ResolvedRun:
         return pd.DataFrame(table)
 
     def vorticity(self) -> np.ndarray:
-        """Vorticity about y in 1/s in the plane through the middle of the box, (nx, nz).
+        """Vorticity about y in 1/s in the plane through the middle of the whole box, (nx, nz).
 
         By central differences; inside the sphere the velocity is the sphere's own.
         """
         u = self.simulation.velocity
-        middle = self.simulation.shape[1] // 2
+        for axis in map(AXES.index, self.setup.mirrors):
+            u = with_image(u, axis)
+        middle = u.shape[2] // 2
         along, up = u[0, :, middle, :].astype(float), u[2, :, middle, :].astype(float)
         centre, r = self.spheres.centres[0], self.spheres.radii[0]
         x, z = (np.arange(n) + 0.5 for n in along.shape)
+        if "x" in self.setup.mirrors:
+            x -= self.simulation.shape[0]
         inside = (x[:, None] - centre[0]) ** 2 + (z[None, :] - centre[2]) ** 2 < r**2
         along[inside], up[inside] = self.spheres.velocities[0, [0, 2]]
         curl = np.gradient(along, axis=1) - np.gradient(up, axis=0)

@@ -48,6 +48,8 @@ class Setup:
     drive: Callable | None
     film: Film | None
     contact: Contact | None
+    mirrors: str = ""
+    """Axes at whose low faces the box is half of the whole."""
 
     @property
     def rows_apart(self) -> int:
@@ -91,14 +93,22 @@ def set_up(case: Case) -> Setup:
     Raises :class:`lbm.InputError` for numbers that it refuses; warns of those it doubts.
     """
     n, flow = case.numerics, _scales(case)
-    wide, high = round(n.width_d * flow.length), round(n.height_d * flow.length)
+    quarter = n.symmetry == "quarter"
+    wide = round(n.width_d * flow.length / (2 if quarter else 1))
+    high = round(n.height_d * flow.length)
+    # Half-way between two images of the sphere lies a plane of symmetry, so periodic sides are mirrors too.
+    far = "free-slip" if n.sides == "periodic" else n.sides
+    sides = (
+        {"x-": "free-slip", "x+": far, "y-": "free-slip", "y+": far} if quarter else {"x": n.sides, "y": n.sides}
+    )
     radius, density = flow.length / 2, case.sphere.density / case.fluid.density
-    position = (wide / 2, wide / 2, radius + case.release.gap_d * flow.length)
+    middle = 0.0 if quarter else wide / 2
+    position = (middle, middle, radius + case.release.gap_d * flow.length)
     return Setup(
         flow=flow,
         shape=(wide, wide, high),
         rates=PRESETS[n.rates](viscosity=flow.viscosity),
-        faces={"x": n.sides, "y": n.sides, "z-": "no-slip", "z+": n.top},
+        faces={**sides, "z-": "no-slip", "z+": n.top},
         precision=n.precision,
         interpolation=n.interpolation,
         sphere=Sphere(radius, density, position),
@@ -106,6 +116,7 @@ def set_up(case: Case) -> Setup:
         drive=_drive(case, flow),
         film=_film(case, flow),
         contact=_contact(case, flow, density),
+        mirrors="xy" if quarter else "",
     )
 
 

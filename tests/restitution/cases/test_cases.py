@@ -105,6 +105,11 @@ BAD = {
     "sphere in the wall": ("gap_d = 9", "gap_d = -0.2", "release.gap_d"),
     "sphere beyond the box": ("gap_d = 9", "gap_d = 14", "release.gap_d"),
     "too few cells": ("cells_per_diameter = 10", "cells_per_diameter = 4", "numerics.cells_per_diameter"),
+    "a quarter of an oblique impact": (
+        "ramp = 0.004\n[numerics]\n",
+        'ramp = 0.004\nalong = 0.1\n[numerics]\nsymmetry = "quarter"\n',
+        "numerics.symmetry",
+    ),
     "box too low for the rebound": (
         "cells_per_diameter = 10",
         "cells_per_diameter = 10\nheight_d = 8",

@@ -3,6 +3,7 @@
 import json
 import math
 
+import h5py
 import numpy as np
 import pandas as pd
 import pytest
@@ -264,3 +265,25 @@ def test_a_checkpoint_belongs_to_the_text_of_the_program(tmp_path, monkeypatch):
     before = checkpoint_key(tiny(tmp_path))
     monkeypatch.setattr("restitution.runs.validity.key.program_hash", lambda: "0" * 12)
     assert checkpoint_key(tiny(tmp_path)) != before
+
+
+def test_a_quarter_of_the_box_shows_the_flow_of_the_whole(tmp_path):
+    """Track, vorticity and ParaView's field; x and y of the quarter count from the axis."""
+    shown = []
+    for symmetry in ("none", "quarter"):
+        more = f'width_d = 3\nprecision = "float64"\nsymmetry = "{symmetry}"'
+        path = tmp_path / f"{symmetry}.toml"
+        path.write_text(TINY.replace("width_d = 2.5", more))
+        run = resolved.ResolvedRun(cases.read_case(path))
+        run.simulation.run(60)
+        output = run.snapshots(tmp_path)
+        output(run.simulation)
+        with h5py.File(output.written[0]) as file:
+            root = file["VTKHDF"]
+            shown.append((run, run.vorticity(), root["CellData/velocity"][...], root.attrs["Origin"]))
+    (whole, curl, velocity, _), (quarter, its_curl, its_velocity, origin) = shown
+    assert whole.cells == 4 * quarter.cells
+    assert quarter.gap_d == pytest.approx(whole.gap_d, rel=1e-9)
+    assert its_curl == pytest.approx(curl, abs=1e-9 * np.abs(curl).max())
+    assert its_velocity == pytest.approx(velocity, abs=1e-9 * np.abs(velocity).max())
+    assert origin[:2] == pytest.approx([-1.5 * whole.case.sphere.diameter] * 2)
