@@ -171,7 +171,7 @@ def _reflect(populations, grid, parity, links, fraction, u, levers, sums):
             x, y, z, k = links[link]
             rho = sent_density(populations, grid, parity, x, y, z) if moves else 0.0
             cut = Link(x, y, z, k, fraction[link])
-            px, py, pz = exchange_link(populations, grid, parity, LINEAR, cut, u, rho, False)
+            px, py, pz, _ = exchange_link(populations, grid, parity, LINEAR, cut, u, rho, False, 0.0)
             rx, ry, rz = levers[link]
             fx += px
             fy += py

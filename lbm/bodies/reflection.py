@@ -72,11 +72,12 @@ class Link(NamedTuple):
 
 
 @inlined
-def exchange_link(populations, grid, parity, scheme, link, u, rho, solid_behind):
-    """Reflect a :class:`Link`; the momentum that the body takes there, 3 components.
+def exchange_link(populations, grid, parity, scheme, link, u, rho, solid_behind, payback):
+    """Reflect a :class:`Link`; the momentum that the body takes there, 3 components, and the mass the fluid gains.
 
     ``u`` is the surface's velocity where the link meets it, ``rho`` the density of the cell, which counts only
     if the surface moves. With ``solid_behind`` nothing arrives from behind: the surface is taken half-way.
+    ``payback`` comes back besides.
     """
     x, y, z, k, q = link
     back = OPPOSITE[k]
@@ -86,7 +87,7 @@ def exchange_link(populations, grid, parity, scheme, link, u, rho, solid_behind)
     if solid_behind:
         q, arrived = 0.5, sent_back
     push = 6 * W[k] * rho * (C[k, 0] * u[0] + C[k, 1] * u[1] + C[k, 2] * u[2])
-    value = reflect(scheme, q, sent, sent_back, arrived, push)
+    value = reflect(scheme, q, sent, sent_back, arrived, push) + payback
     populations[incoming(grid, parity, back, x, y, z)] = value
     both, lost = sent + value, sent - value
-    return C[k, 0] * both - u[0] * lost, C[k, 1] * both - u[1] * lost, C[k, 2] * both - u[2] * lost
+    return C[k, 0] * both - u[0] * lost, C[k, 1] * both - u[1] * lost, C[k, 2] * both - u[2] * lost, -lost

@@ -1,9 +1,10 @@
 """Spheres that move in the fluid and meet walls.
 
 Read :mod:`~lbm.spheres.spheres` (a step of a sphere), then its parts in their order: :mod:`~lbm.spheres.surface`,
-:mod:`~lbm.spheres.exchange` and :mod:`~lbm.spheres.refill` (sphere and fluid), :mod:`~lbm.spheres.symmetry` (a sphere
-that mirrors cut), :mod:`~lbm.spheres.film`, :mod:`~lbm.spheres.contact` :mod:`~lbm.spheres.wall_motion` (sphere and wall), where each kind of contact has a motion of its own
-(:mod:`~lbm.spheres.motion`, :mod:`~lbm.spheres.carried`).
+:mod:`~lbm.spheres.exchange`, :mod:`~lbm.spheres.refill` and :mod:`~lbm.spheres.mass` (sphere and fluid),
+:mod:`~lbm.spheres.symmetry` (a sphere that a mirror cuts), :mod:`~lbm.spheres.film`,
+:mod:`~lbm.spheres.contact` and :mod:`~lbm.spheres.wall_motion` (sphere and wall), where each kind of contact has a
+motion of its own (:mod:`~lbm.spheres.motion`, :mod:`~lbm.spheres.carried`).
 :mod:`~lbm.spheres.sampling` tells one film or contact from another, for checkpoints.
 """
 

@@ -1,6 +1,7 @@
 """Momentum exchange of spheres and fluid: the links through the surface are found cell by cell and reflected.
 
-Force and torque are the sums over the links of what :func:`lbm.bodies.reflection.exchange_link` gives.
+Force, torque and the mass that the fluid gains are the sums over the links of what
+:func:`lbm.bodies.reflection.exchange_link` gives.
 """
 
 from __future__ import annotations
@@ -14,19 +15,19 @@ from lbm.bodies.reflection import Link, exchange_link
 from lbm.fluid.cache import kernel
 from lbm.fluid.fields import sent_density
 from lbm.fluid.lattice import outgoing
-from lbm.fluid.stencil import C, Q
+from lbm.fluid.stencil import C, Q, W
 from lbm.spheres.surface import REACH, cut, image, inside, inside_any, surface_velocity, wrapped
 
 
 @kernel
 def exchange(populations, grid, parity, scheme, surfaces, s, sums):
-    """Reflect all links of sphere ``s``; its ``sums`` (planes, 6) get force and torque plane by plane.
+    """Reflect all links of sphere ``s``; its ``sums`` (planes, 7) get force, torque and mass plane by plane.
 
     Sums over planes are added in their order by the caller, so they do not depend on the number of threads.
     """
     first = np.int64(math.floor(surfaces.centres[s, 2] - surfaces.radii[s] - REACH - 0.5))
     for plane in prange(sums.shape[0]):
-        for i in range(6):
+        for i in range(7):
             sums[plane, i] = 0.0
         _exchange_plane(populations, grid, parity, scheme, surfaces, s, first + np.int64(plane), sums[plane])
 
@@ -70,7 +71,8 @@ def _exchange_plane(populations, grid, parity, scheme, surfaces, s, plane, sums)
                 u = surface_velocity(surfaces, s, rx, ry, rz)
                 behind = _solid_behind(grid, cell, row, plane, k, centres, radii)
                 link = Link(x, y, z, k, q)
-                fx, fy, fz = exchange_link(populations, grid, parity, scheme, link, u, rho, behind)
+                back = W[k] * surfaces.payback[s]
+                fx, fy, fz, gain = exchange_link(populations, grid, parity, scheme, link, u, rho, behind, back)
                 # What was sent into the sphere goes no further: its cells are swept too, and stay at rest.
                 populations[outgoing(grid, parity, k, x, y, z)] = 0.0
                 sums[0] += fx
@@ -79,6 +81,7 @@ def _exchange_plane(populations, grid, parity, scheme, surfaces, s, plane, sums)
                 sums[3] += ry * fz - rz * fy
                 sums[4] += rz * fx - rx * fz
                 sums[5] += rx * fy - ry * fx
+                sums[6] += gain
 
 
 @njit

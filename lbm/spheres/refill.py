@@ -22,9 +22,14 @@ from lbm.spheres.surface import inside, inside_any, surface_velocity, wrapped
 
 @kernel(parallel=False)
 def refill(populations, grid, parity, before, surfaces, s):
-    """Fill the cells that sphere ``s`` covered with the centres ``before`` and no sphere covers now."""
-    radius = surfaces.radii[s]
+    """Fill the cells that sphere ``s`` covered with the centres ``before`` and no sphere covers now.
+
+    Returns the mass that the fluid gains: the deviations from rest of these cells, less those of the cells that
+    the sphere has covered.
+    """
+    radius, centre = surfaces.radii[s], surfaces.centres[s]
     around = radius + 0.5
+    gain = 0.0
     for plane in range(math.floor(before[s, 2] - around), math.ceil(before[s, 2] + around) + 1):
         z = wrapped(plane, grid.nz, grid.z_low)
         if z < 0:
@@ -38,10 +43,26 @@ def refill(populations, grid, parity, before, surfaces, s):
                 if x < 0:
                     continue
                 dx, dy, dz = cell + 0.5 - before[s, 0], row + 0.5 - before[s, 1], plane + 0.5 - before[s, 2]
-                if not inside(dx, dy, dz, radius) or inside_any(grid, x, y, z, surfaces.centres, surfaces.radii):
+                was = inside(dx, dy, dz, radius)
+                if was == inside(cell + 0.5 - centre[0], row + 0.5 - centre[1], plane + 0.5 - centre[2], radius):
                     continue
-                u = surface_velocity(surfaces, s, dx, dy, dz)
-                _fill(populations, grid, parity, (cell, row, plane), (dx, dy, dz), u, before, surfaces)
+                if not was:
+                    if not inside_any(grid, x, y, z, before, surfaces.radii):
+                        gain -= _deviation(populations, grid, parity, x, y, z)
+                elif not inside_any(grid, x, y, z, surfaces.centres, surfaces.radii):
+                    u = surface_velocity(surfaces, s, dx, dy, dz)
+                    _fill(populations, grid, parity, (cell, row, plane), (dx, dy, dz), u, before, surfaces)
+                    gain += _deviation(populations, grid, parity, x, y, z)
+    return gain
+
+
+@njit
+def _deviation(populations, grid, parity, x, y, z):
+    """Density less that at rest of a cell, of the populations that come in."""
+    drho = 0.0
+    for k in range(Q):
+        drho += populations[incoming(grid, parity, k, x, y, z)]
+    return drho
 
 
 @njit

@@ -10,6 +10,7 @@
    of inertia of the displaced fluid: the last two terms cancel for all but changes from step to step, which in
    fluid of low viscosity would otherwise grow, the fluid having no pressure to pass on a torque at once.
 3. Cells that come free are filled (:mod:`lbm.spheres.spheres.refill`).
+4. What mass all this has brought into the fluid or out of it goes back (:mod:`lbm.spheres.mass`).
 
 A sphere whose centre lies on a free-slip face is the whole one, of which the box holds a half or a quarter
 (:mod:`lbm.spheres.symmetry`); masses, forces and tracks are those of the whole.
@@ -32,16 +33,17 @@ from lbm.fluid.lattice import BOUNCE, PERIODIC, SLIP, Lattice
 from lbm.spheres.contact import Contact, Impact
 from lbm.spheres.exchange import exchange
 from lbm.spheres.film import Film
+from lbm.spheres.mass import payback
 from lbm.spheres.refill import refill
 from lbm.spheres.sampling import sampled
 from lbm.spheres.surface import REACH, Surfaces
-from lbm.spheres.symmetry import mirrored_axes, of_whole, refuse_asymmetric, refuse_asymmetric_spin
+from lbm.spheres.symmetry import mirrored_axes, of_whole, parts, refuse_asymmetric, refuse_asymmetric_spin
 from lbm.spheres.wall_motion import FRACTION, motion_at_wall
 
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
 """Columns of :meth:`Spheres.track`; f and t are force and torque of the fluid."""
-_MOVING = ("centres", "velocities", "spins", "spin_changes", "forces", "torques")
+_MOVING = ("centres", "velocities", "spins", "spin_changes", "forces", "torques", "surplus")
 _SMALLEST_RADIUS = 2.0
 """In cells: below, a sphere is not resolved."""
 _STEPS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
@@ -99,6 +101,7 @@ class Spheres(Body):
     radii, volumes, masses : (n,), of the n spheres.
     centres, velocities, spins : (n, 3), now.
     forces, torques : (n, 3), what the fluid did to them in the last step.
+    surplus : (n,), mass that their surfaces have still to take back from the fluid (:mod:`lbm.spheres.mass`).
     impacts : list of :class:`SphereImpact`, as they came.
 
     Raises
@@ -134,13 +137,14 @@ class Spheres(Body):
         self.fraction = fraction
         self.scheme = SCHEMES[interpolation]
         self.forces, self.torques = np.zeros_like(self.centres), np.zeros_like(self.centres)
+        self.surplus = np.zeros(len(spheres))
         self.impacts: list[SphereImpact] = []
         self._at_walls = {
             (s, face): motion_at_wall(film, contact, fraction) for s in range(len(spheres)) for face in range(6)
         }
         self._free = drive is None
         self._tracks: list[list[tuple[float, ...]]] = [[] for _ in spheres]
-        self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 6)) for r in self.radii]
+        self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 7)) for r in self.radii]
 
     def track(self, sphere: int = 0) -> dict[str, np.ndarray]:
         """Motion of one sphere, a row a step.
@@ -180,16 +184,20 @@ class Spheres(Body):
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Exchange momentum, move, refill."""
         grid, populations, parity = lattice.grid, lattice.populations, lattice.parity
-        surfaces = Surfaces(self.centres, self.radii, self.velocities, self.spins)
+        back = payback(self.surplus, self.radii)
+        surfaces = Surfaces(self.centres, self.radii, self.velocities, self.spins, back)
+        mirrors = [mirrored_axes(grid, centre) for centre in self.centres]
         for s, sums in enumerate(self._sums):
             exchange(populations, grid, parity, self.scheme, surfaces, s, sums)
-            force, torque = np.add.reduce(sums[:, :3]), np.add.reduce(sums[:, 3:])
-            self.forces[s], self.torques[s] = of_whole(mirrored_axes(grid, self.centres[s]), force, torque)
+            force, torque, gain = np.split(np.add.reduce(sums), (3, 6))
+            self.forces[s], self.torques[s] = of_whole(mirrors[s], force, torque)
+            self.surplus[s] += parts(mirrors[s]) * gain[0]
         before = self.centres.copy()
         for s in range(len(self.radii)):
             self._move(s, float(step), grid)
         for s in range(len(self.radii)):
-            refill(populations, grid, parity, before, surfaces, s)
+            gain = refill(populations, grid, parity, before, surfaces, s)
+            self.surplus[s] += parts(mirrors[s]) * gain
 
     def _move(self, s: int, step: float, grid) -> None:
         walls = [f for f, kind in enumerate(grid.faces) if kind == BOUNCE]

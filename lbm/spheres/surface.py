@@ -17,12 +17,13 @@ REACH = math.sqrt(2.0)
 
 
 class Surfaces(NamedTuple):
-    """The spheres as the kernels see them: ``radii`` (n,), the others (n, 3)."""
+    """The spheres as the kernels see them: ``radii`` and :func:`~lbm.spheres.mass.payback` (n,), others (n, 3)."""
 
     centres: np.ndarray
     radii: np.ndarray
     velocities: np.ndarray
     spins: np.ndarray
+    payback: np.ndarray
 
 
 @inlined

@@ -21,10 +21,15 @@ def mirrored_axes(grid: Grid, centre: np.ndarray) -> np.ndarray:
     return (low & (centre == 0)) | (high & (centre == grid.shape))
 
 
+def parts(mirrors: np.ndarray) -> int:
+    """How many times the part within the box the whole is."""
+    return 2 ** int(np.count_nonzero(mirrors))
+
+
 def of_whole(mirrors: np.ndarray, force: np.ndarray, torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Force and torque on the whole sphere from those on its surface within the box."""
-    share = 2 ** np.count_nonzero(mirrors)
-    return np.where(mirrors, 0.0, share * force), np.where(_reverses_spin(mirrors), 0.0, share * torque)
+    n = parts(mirrors)
+    return np.where(mirrors, 0.0, n * force), np.where(_reverses_spin(mirrors), 0.0, n * torque)
 
 
 def refuse_asymmetric(mirrors: np.ndarray, name: str, vector: np.ndarray) -> None:
