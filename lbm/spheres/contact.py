@@ -51,7 +51,7 @@ class FilmRebound:
     ----------
     rebound : ``rebound(approach_speed, count)`` gives the speed after impact ``count`` (from 0), in cells a step.
     edge : gap in cells outside which the law's speeds are those of the motion.
-    free_fall : acceleration towards the wall on the way out, in cells a step^2, not negative.
+    free_fall : acceleration towards the wall within the edge, in cells a step^2, not negative.
 
     Raises
     ------
@@ -60,11 +60,11 @@ class FilmRebound:
 
     Notes
     -----
-    Both speeds are those of the motion outside the film, gap >= ``edge``, carried to the wall. The law speaks
-    of the whole film, so within it the law moves the sphere and the fluid follows: inwards with the velocity
-    at the edge and the mean acceleration of the last ``edge`` before it, outwards from the rebound speed with
-    the acceleration ``-free_fall``. What the fluid does to the sphere meanwhile, the reversal of the fluid
-    around it included, is part of what the law was measured to sum up.
+    Both speeds are those of the motion outside the film, gap >= ``edge``, carried to the wall by free fall. The
+    law speaks of the whole film, so within it the sphere falls freely, inwards and outwards, and the fluid
+    follows. What the fluid does to the sphere meanwhile, the reversal of the fluid around it included, is part
+    of what the law was measured to sum up. A rebound that would be back within one step ends in rest, until the
+    fluid lifts the sphere.
     """
 
     rebound: Callable[[float, int], float]
