@@ -56,8 +56,8 @@ def _errors(score: Score) -> str:
     apexes = " and ".join(percent(error) for error in score.bounces.apex_errors[:2])
     intervals = " and ".join(percent(error) for error in score.bounces.interval_errors[:2])
     return (
-        f", at {score.grid.cells_per_diameter:g} cells per diameter: the first two apexes are off by {apexes}, the "
-        f"times between contacts by {intervals}; the rms distance is {number(score.rms_gap_d, 3)} d."
+        f", at {score.grid.cells_per_diameter:g} cells per diameter: the first two apexes are off by {apexes}, "
+        f"the times between contacts by {intervals}; the rms distance is {number(score.rms_gap_d, 3)} d."
     )
 
 
