@@ -142,12 +142,15 @@ class Study(Record):
 
     ``varies`` says in words what the case has otherwise than the case ``against``. Cases of the same words against
     the same one are a group of the table of what the result depends on; groups stand by ``order``, those without
-    one last. ``series`` names the simulated series of Fig. 1 that its impacts join: its rebound is no input.
+    one last. With ``unknown`` nobody knows which of the values varied is right: the runs of such cases make the
+    band that is drawn about the run of the case ``against``. ``series`` names the simulated series of Fig. 1 that
+    its impacts join: its rebound is no input.
     """
 
     varies: str | None = None
     against: str | None = None
     order: Positive | None = None
+    unknown: bool = False
     series: str | None = None
 
 

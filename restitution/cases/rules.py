@@ -142,6 +142,8 @@ def _study(case: Case) -> Iterator[Finding]:
     for name, other in (("varies", "against"), ("against", "varies"), ("order", "varies")):
         if getattr(study, name) is not None and getattr(study, other) is None:
             yield f"study.{other}", None, f"is missing: study.{name} is given"
+    if study.unknown and study.against is None:
+        yield "study.against", None, "is missing: study.unknown says that the run belongs to the band of another"
     if study.against == case.name:
         yield "study.against", case.name, "is the case itself"
     if study.series is not None and (contact is None or contact.mode == "effective"):

@@ -11,7 +11,7 @@ from restitution import datasets
 from restitution.bounce.agreement import distance_from_contact_d
 from restitution.impacts.bounces import Bounces
 from restitution.impacts.shipped import impacts_of
-from restitution.report.fig2.content import MAIN, PUBLISHED, RECORD, SHORT, Fig2
+from restitution.report.fig2.content import PUBLISHED, RECORD, SHORT, Fig2
 from restitution.report.fig2.scores import BOUNCES, Score, reference_apexes
 from restitution.report.page import number, percent
 from restitution.stokes import Speed
@@ -25,7 +25,7 @@ def main_rows(fig2: Fig2) -> list[dict]:
     ]
     own = [name for name in fig2.own if fig2.runs[name].case.record == RECORD]
     grids = [
-        name for group in fig2.groups if group.of_grids and group.against.name == MAIN for name in group.names
+        name for group in fig2.groups if group.of_grids and group.against.name in SHORT for name in group.names
     ]
     shown = dict.fromkeys((*SHORT, *grids, *own))
     rows += [run_row(fig2, name) for name in shown if name in fig2.runs]

@@ -30,10 +30,12 @@ RECORD = "gondret2002_st152"
 """The record of the figure."""
 PUBLISHED = "biegert2017_st152"
 """The published simulation of it."""
-IMPOSED, MAIN, SOFT = "gondret_st152_10_measured", "gondret_st152_10", "gondret_st152_10_soft"
+IMPOSED, DRY, SOFT = "gondret_st152_10_imposed", "gondret_st152_10", "gondret_st152_10_soft"
 """Contact modes (a), (b), (c) at ten cells a diameter."""
-SHORT = (IMPOSED, MAIN, SOFT)
-"""What the figure shows, made where it is missing."""
+FINE = "gondret_st152_20"
+"""Mode (b) on a finer grid, at half the lattice speed."""
+SHORT = (IMPOSED, DRY, SOFT)
+"""What is made where it is missing."""
 VERIFICATION = "benchmarks/sphere.json"
 """Where a checkout keeps the solver's verification; what is read is the caller's to say."""
 

@@ -6,7 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from restitution.impacts.shipped import impacts_of
-from restitution.report.fig2.content import IMPOSED, MAIN, RECORD, SOFT, Fig2
+from restitution.report.fig2.bands import band
+from restitution.report.fig2.content import DRY, IMPOSED, RECORD, SOFT, Fig2
 from restitution.report.fig2.scores import Score
 from restitution.report.page import number, percent
 from restitution.stokes import Speed
@@ -18,34 +19,56 @@ if TYPE_CHECKING:
 
 
 def in_words(fig2: Fig2) -> list[str]:
-    """Findings on the main run, its restitution, its grid and its contact, as far as there are runs."""
-    if MAIN not in fig2.runs:
-        return []
-    words = [_main(fig2.scores[MAIN]), _restitution(fig2.runs[MAIN])]
-    words += [w for group in fig2.groups if (w := _grids(fig2, group))]
-    if SOFT in fig2.runs:
-        change = _first_apex(fig2.scores[SOFT]) / _first_apex(fig2.scores[MAIN]) - 1
+    """Findings on the two ways of contact, restitution, what is not known, grids, and the stretched contact."""
+    words = []
+    for name, opening in _openings(fig2).items():
+        words += [opening + _errors(fig2.scores[name]) + _unknown(fig2, name), _restitution(fig2.runs[name])]
+        words += [w for group in fig2.groups if (w := _grids(fig2, group, name))]
+    if SOFT in fig2.runs and DRY in fig2.runs:
+        change = _first_apex(fig2.scores[SOFT]) / _first_apex(fig2.scores[DRY]) - 1
         words.append(
             "A contact stretched over the time that sound needs to pass two diameters, which takes no added mass "
-            f"from outside, changes the first apex by {percent(change)}."
+            f"from outside, changes the first apex of the dry contact by {percent(change)}."
         )
-    if IMPOSED in fig2.runs:
-        words.append(_imposed(fig2.scores[IMPOSED], fig2.runs[IMPOSED]))
     return words
+
+
+def _openings(fig2: Fig2) -> dict[str, str]:
+    """How each way of contact was run, by case, as far as there are runs."""
+    found = {}
+    if IMPOSED in fig2.runs:
+        contact = fig2.runs[IMPOSED].case.contact
+        constants = ", ".join(f"{name} = {value:g}" for name, value in contact.parameters.items())
+        found[IMPOSED] = (
+            f"The abstract's way, e_eff imposed at each bounce by {contact.law} with {constants}, fitted to the "
+            "other records"
+        )
+    if DRY in fig2.runs:
+        found[DRY] = "With e_dry and the film resolved, nothing tuned"
+    return found
 
 
 def _first_apex(score: Score) -> float:
     return score.bounces.apexes_m[0]
 
 
-def _main(score: Score) -> str:
+def _errors(score: Score) -> str:
     apexes = " and ".join(percent(error) for error in score.bounces.apex_errors[:2])
     intervals = " and ".join(percent(error) for error in score.bounces.interval_errors[:2])
     return (
-        f"With nothing tuned, at {score.grid.cells_per_diameter:g} cells per diameter, the first two apexes are "
-        f"off by {apexes}, the times between contacts by {intervals}; the rms distance is "
-        f"{number(score.rms_gap_d, 3)} d."
+        f", at {score.grid.cells_per_diameter:g} cells per diameter: the first two apexes are off by {apexes}, "
+        f"the times between contacts by {intervals}; the rms distance is {number(score.rms_gap_d, 3)} d."
     )
+
+
+def _unknown(fig2: Fig2, name: str) -> str:
+    """How far the first apex lies open, one cause at a time."""
+    about = band(fig2, name)
+    if about is None:
+        return ""
+    apexes = [_first_apex(fig2.scores[case]) for case in (name, *about.cases)]
+    low, high = (number(apex * 1e3, 2) for apex in (min(apexes), max(apexes)))
+    return f" What is not known leaves its first apex open from {low} to {high} mm ({', '.join(about.cases)})."
 
 
 def _restitution(run: KeptRun) -> str:
@@ -57,26 +80,14 @@ def _restitution(run: KeptRun) -> str:
     within = sum(abs(a - b) <= 2 * s for a, b, s in pairs)
     each = "; ".join(f"{a:.3f} against {b:.3f} ± {s:.3f}" for a, b, s in pairs)
     return (
-        f"Its e_eff outside the film, bounce by bounce, the measured one second: {each}; "
-        f"{within} of {len(pairs)} within two standard errors."
+        f"Its e_eff outside the film by slopes, both evaluated alike, bounce by bounce, the measured one second: "
+        f"{each}; {within} of {len(pairs)} within two standard errors."
     )
 
 
-def _imposed(score: Score, run: KeptRun) -> str:
-    """What becomes of an e_eff that is imposed at the wall."""
-    far = run.impacts[run.impacts.speed_definition == str(Speed.FAR)].e_eff.dropna()
-    given = [c.speed_out_m_s / c.speed_in_m_s for c in run.about.contacts[: len(far)] if c.speed_in_m_s > 0]
-    pairs = "; ".join(f"{a:.3f} becomes {b:.3f}" for a, b in zip(given, far, strict=False))
-    return (
-        f"With contact (a) e_eff is imposed at the wall; evaluated as the record is, {pairs}, and the first apex "
-        f"is off by {percent(score.bounces.apex_errors[0])}: the drag of the fluid set in motion, strongest at "
-        "once after the reversal, is in the measured e_eff already and acts once more in the run."
-    )
-
-
-def _grids(fig2: Fig2, group: Group) -> str | None:
-    """How far the apexes of several grids and lattice speeds are apart, with the closures of the main run."""
-    main, first = fig2.runs[MAIN].case, group.against
+def _grids(fig2: Fig2, group: Group, name: str) -> str | None:
+    """How far the apexes of several grids and lattice speeds are apart, with the closures of the run ``name``."""
+    main, first = fig2.runs[name].case, group.against
     if not group.of_grids or (first.contact, first.film) != (main.contact, main.film):
         return None
     known = [n for n in group.names if n in fig2.runs and not math.isnan(_first_apex(fig2.scores[n]))]
@@ -91,7 +102,7 @@ def _grids(fig2: Fig2, group: Group) -> str | None:
         values = ", ".join(number(apex * 1e3, 2) for apex in apexes)
         shown.append(f"{which} apex {values} mm, {100 * (max(apexes) / min(apexes) - 1):.1f} % between them")
     stale = ", ".join(name for name in known if fig2.runs[name].stale)
-    where = "" if first.name == MAIN else " in the smaller box" if _smaller(first, main) else f" of {first.name}"
+    where = "" if first.name == name else " in the smaller box" if _smaller(first, main) else f" of {first.name}"
     return (
         f"With {cells} cells per diameter and lattice speeds of {speeds}{where}: {'; '.join(shown)}; "
         f"the last is {percent(scores[-1].bounces.apex_errors[0])} from the record's first apex."

@@ -10,7 +10,7 @@ from restitution import datasets
 from restitution.bounce.agreement import UNTIL
 from restitution.impacts.shipped import impacts_of
 from restitution.report.fig2.bounce_table import main_rows, rows_of_other_records, run_row
-from restitution.report.fig2.content import MAIN, RECORD, SHORT, VERIFICATION, Fig2
+from restitution.report.fig2.content import DRY, RECORD, SHORT, VERIFICATION, Fig2
 from restitution.report.fig2.findings import in_words
 from restitution.report.fig2.scores import BOUNCES, reference_apexes
 from restitution.report.fig2.sensitivity import sensitivity
@@ -61,7 +61,7 @@ def render(fig2: Fig2, figure: Drawing, others: Drawing | None, flow: Drawing | 
         stale=[name for name, run in fig2.runs.items() if run.stale],
         missing=fig2.missing,
         own=fig2.own,
-        main_case=MAIN,
+        flow_case=DRY,
     )
 
 

@@ -10,8 +10,9 @@ import numpy as np
 from restitution import datasets
 from restitution.impacts.bounces import frame_velocity
 from restitution.report.drawing import Drawing, save, style
-from restitution.report.fig2.content import IMPOSED, MAIN, PUBLISHED, RECORD, SOFT, Fig2
-from restitution.report.fig2.point_lines import DRY, FITTED, RATIONAL
+from restitution.report.fig2 import point_lines
+from restitution.report.fig2.bands import band
+from restitution.report.fig2.content import DRY, FINE, IMPOSED, PUBLISHED, RECORD, Fig2
 from restitution.runs.flow_pictures import MOMENTS
 
 if TYPE_CHECKING:
@@ -20,16 +21,15 @@ if TYPE_CHECKING:
 
     from restitution.runs.kept import KeptRun
 
-# label, colour, dashes: told apart by the dashes alone
+# label, colour, dashes: told apart by the dashes alone; hatching of the band of what is not known
 LINES = {
-    IMPOSED: ("simulation, contact (a): measured $e_{eff}$ each bounce", "#D55E00", (0, (6, 2))),
-    MAIN: ("simulation, contact (b): $e_{dry}$, film resolved", "#000000", "-"),
-    SOFT: ("simulation, contact (c): soft, stretched", "#0072B2", (0, (1, 1.2))),
+    IMPOSED: ("simulation (a): Eq. (4) imposed, K of the other records", "#000000", "-", "////"),
+    DRY: ("simulation (b): $e_{dry}$, film resolved", "#D55E00", (0, (6, 2)), "...."),
+    FINE: ("the same, 20 cells per diameter", "#0072B2", (0, (1, 1.2)), ""),
 }
 POINTS = {
-    DRY: ("point particle: $e_{dry}$, cavitating film", "#009E73", (0, (1, 3))),
-    RATIONAL: ("point particle: Eq. (4), rational", "#CC79A7", (0, (9, 2, 1, 2, 1, 2))),
-    FITTED: ("point particle: Eq. (4), K by all positions, wake; 95 %", "#555555", (0, (2, 1))),
+    point_lines.DRY: ("point particle: $e_{dry}$, cavitating film", "#009E73", (0, (1, 3))),
+    point_lines.FITTED: ("point particle: Eq. (4), K of all records", "#CC79A7", (0, (9, 2, 1, 2, 1, 2))),
 }
 PUBLISHED_LINE = {"color": "#888888", "lw": 1.0, "marker": "D", "ms": 3, "mfc": "#cccccc", "mec": "#888888"}
 MEASURED = {
@@ -54,12 +54,15 @@ def draw(fig2: Fig2) -> Drawing:
     with style():
         figure = Figure(figsize=(11.0, 8.6), layout="constrained")
         top, bottom = figure.subplots(2, 1, sharex=True)
-        for name, (label, colour, dashes) in LINES.items():
+        for name, (label, colour, dashes, hatch) in LINES.items():
             if (run := fig2.runs.get(name)) is None:
                 continue
             look = {"color": colour, "ls": dashes, "zorder": 3}
             top.plot(run.velocity.time_s * 1e3, run.velocity.velocity_m_s, label=label, **look)
             bottom.plot(run.trajectory.time_s * 1e3, run.trajectory.gap_m / d, **look)
+            if (about := band(fig2, name)) is not None:
+                spread = {"facecolor": "none", "edgecolor": colour, "hatch": hatch, "lw": 0.4, "zorder": 1}
+                bottom.fill_between(about.time_s * 1e3, about.low_m / d, about.high_m / d, **spread)
         for line in fig2.lines:
             if line.name not in POINTS:
                 continue
@@ -67,10 +70,6 @@ def draw(fig2: Fig2) -> Drawing:
             look = {"color": colour, "ls": dashes, "lw": 1.1, "zorder": 2}
             top.plot(line.time_s * 1e3, line.velocity_m_s, label=label, **look)
             bottom.plot(line.time_s * 1e3, line.gap_m / d, **look)
-            if line.band_m is not None:
-                low, high = (gap / d for gap in line.band_m)
-                band = {"facecolor": "none", "edgecolor": colour, "hatch": "////", "lw": 0.4, "zorder": 1}
-                bottom.fill_between(line.time_s * 1e3, low, high, **band)
         for ax, values in zip((top, bottom), _published(fig2, published.contacts_s), strict=True):
             scale = 1 if ax is top else 1 / d
             ax.plot(
@@ -165,7 +164,7 @@ def draw_flow(fig2: Fig2) -> Drawing | None:
     from matplotlib.figure import Figure
     from matplotlib.patches import Circle
 
-    run = fig2.runs.get(MAIN)
+    run = fig2.runs.get(DRY)
     frames = run.flow.frames if run is not None else {}
     if not frames:
         return None

@@ -1,7 +1,7 @@
 """The point-particle model in the Fig. 2 report: its lines for a record, their scores, and each force off in turn.
 
 The sphere is released as it was filmed: its first frame, at the mean speed of the approach. One line has the K
-that all positions of all measured records give (:mod:`restitution.calibration.trajectories.fit`), and a band.
+that all positions of all measured records give (:mod:`restitution.calibration.trajectories.fit`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 DRY, DRY_WAKE, RATIONAL = "point_particle_dry", "point_particle_dry_wake", "point_particle_eq4_rational"
 FITTED, FITTED_LAW = "point_particle_eq4_fitted", "eq4_exponential"
-_BAND_LINES = 5
 _AFTER_S, _STEP_S = 0.3, 1e-4
 
 
@@ -39,8 +38,6 @@ class PointLine:
     record: str
     contact: str
     path: Trajectory
-    others: tuple[Trajectory, ...] = ()
-    """The same over the 95 % interval of what was fitted."""
 
     @property
     def conditions(self) -> Conditions:
@@ -62,14 +59,6 @@ class PointLine:
     def velocity_m_s(self) -> NDArray:
         """At ``time_s``."""
         return self.path.velocity(self.time_s + self.path.impacts[0].time_s)
-
-    @cached_property
-    def band_m(self) -> tuple[NDArray, NDArray] | None:
-        """Least and greatest gap at ``time_s`` over the interval; None for a line without one."""
-        if not self.others:
-            return None
-        gaps = [path.gap(self.time_s + path.impacts[0].time_s) for path in (self.path, *self.others)]
-        return np.min(gaps, axis=0), np.max(gaps, axis=0)
 
     @property
     def contacts_s(self) -> NDArray:
@@ -104,18 +93,14 @@ def lines(record: str) -> list[PointLine]:
         PointLine(name, record, contact, bounce(conditions, release, chosen, end))
         for name, (contact, chosen) in closures().items()
     ]
-    K, low, high = fitted_K()
-    path, *others = (
-        bounce(conditions, release, Closures(rebound=laws.get(FITTED_LAW, K=k), wake=OwnWake()), end)
-        for k in (K, *np.linspace(low, high, _BAND_LINES))
-    )
-    contact = f"{FITTED_LAW}, K = {K:.1f}, wake"
-    return [*found, PointLine(FITTED, record, contact, path, tuple(others))]
+    K = fitted_K()
+    path = bounce(conditions, release, Closures(rebound=laws.get(FITTED_LAW, K=K), wake=OwnWake()), end)
+    return [*found, PointLine(FITTED, record, f"{FITTED_LAW}, K = {K:.1f}, wake", path)]
 
 
 @cache
-def fitted_K() -> tuple[float, float, float]:
-    """K of the first-ranked reading and its 95 % interval by whole trajectories, all measured records, with wake.
+def fitted_K() -> float:
+    """K of the first-ranked reading by whole trajectories, all measured records, with wake.
 
     Three digits: the fourth may depend on the machine's arithmetic.
     """
@@ -125,9 +110,7 @@ def fitted_K() -> tuple[float, float, float]:
     from restitution.report.records import READING, measured
 
     found = observations(measured((True,)).trajectories[True], READING)
-    fit = law_fit(Plan(model_of(FITTED_LAW)), found).maximum
-    K, low, high = (float(f"{x:.3g}") for x in (fit.values[0], *fit.intervals[0.95][0]))
-    return K, low, high
+    return float(f"{law_fit(Plan(model_of(FITTED_LAW)), found).maximum.values[0]:.3g}")
 
 
 def without_forces(record: str) -> pd.DataFrame:

@@ -85,10 +85,10 @@ def report(tmp_path_factory):
 
 def test_a_run_that_is_shown_has_the_apexes_of_the_report(tmp_path, capsys):
     """Rows so far apart that the highest of them is not the apex; the last flight counts, seen to come down."""
-    keep(tmp_path, fig2.MAIN, 0.75)
-    table = pd.read_csv(tmp_path / fig2.MAIN / "trajectory.csv").iloc[::30]
-    (tmp_path / fig2.MAIN / "trajectory.csv").write_text(table_text(table))
-    show_result(tmp_path / fig2.MAIN, cases.read_case(fig2.MAIN))
+    keep(tmp_path, fig2.DRY, 0.75)
+    table = pd.read_csv(tmp_path / fig2.DRY / "trajectory.csv").iloc[::30]
+    (tmp_path / fig2.DRY / "trajectory.csv").write_text(table_text(table))
+    show_result(tmp_path / fig2.DRY, cases.read_case(fig2.DRY))
     shown = [line.split()[-1] for line in capsys.readouterr().out.splitlines()[1:5]]
     by_hand = [1e3 * (0.75**k * 0.585) ** 2 / 2 / FALL for k in range(1, 5)]
     assert [float(apex) for apex in shown] == pytest.approx(by_hand, abs=1e-3)
@@ -166,7 +166,7 @@ def test_predicted_rebounds_join_figure_1_without_a_score(report):
     own = joined.impacts[joined.impacts.record == "gondret_st152_10"]
     assert len(own) >= 3
     assert set(own.kind) == {"simulated"}
-    assert "gondret_st152_10_measured" not in set(joined.impacts.record)
+    assert "gondret_st152_10_imposed" not in set(joined.impacts.record)
     pd.testing.assert_frame_equal(alone.scores, joined.scores)
     assert set(datasets.names()).isdisjoint(joined.simulated)
 
@@ -191,11 +191,11 @@ def test_all_that_is_damaged_is_named_at_once(runs, tmp_path, capsys):
     about = json.loads((runs / "gondret_st152_16" / "run.json").read_text())
     (runs / "gondret_st152_16" / "run.json").write_text(json.dumps(about | {"finished": False}))
     (runs / "gondret_st152_10_soft" / "velocity.csv").write_text("time_s\n0\n")
-    (runs / "gondret_st152_10_measured" / "impacts.csv").unlink()
+    (runs / "gondret_st152_10_imposed" / "impacts.csv").unlink()
     lines = refused(runs, tmp_path, capsys)
     for name in (
         "gondret_st152_10/run.json", "gondret_st152_16/run.json", "gondret_st152_10_soft/velocity.csv",
-        "gondret_st152_10_measured/impacts.csv",
+        "gondret_st152_10_imposed/impacts.csv",
     ):  # fmt: skip
         assert any(name in line for line in lines)
 

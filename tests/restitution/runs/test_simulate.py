@@ -264,7 +264,7 @@ def test_a_checkpoint_belongs_to_the_very_case_but_not_to_its_title(tmp_path):
 
 
 def test_a_checkpoint_belongs_to_what_the_contact_takes():
-    names = ("", "_legendre", "_eq4", "_measured")
+    names = ("", "_legendre", "_imposed", "_measured")
     assert len({checkpoint_key(cases.read_case(f"gondret_st152_10{n}")) for n in names}) == 4
 
 
