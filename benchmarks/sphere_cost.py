@@ -2,8 +2,8 @@
 
     python -m benchmarks.sphere_cost [--rounds 15] [--json FILE]
 
-Each round times, one after the other, the bare step, the step with the sphere, the sphere's parts, and a step of
-two made at once; the table shows medians of the rounds' own ratios. float32; the bare fluid makes one step a sweep.
+Each round times, one after the other, the bare step, the step with the sphere, its parts, and a step of two made
+at once; the table shows medians of the rounds' own ratios. float32; the bare fluid makes one step a sweep.
 """
 
 from __future__ import annotations

@@ -47,6 +47,8 @@ def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
             # a constant length: compiled to vectors without a remainder
             for i in range(line):
                 _step_cell(populations, starts, first_x + i, rates, force)
+        if whole < grid.nx:
+            prefetch_cell(populations, starts, whole + _AHEAD * line)
         for x in range(whole, grid.nx):
             _step_cell(populations, starts, x, rates, force)
         give_back(populations, grid, rows, parity, y, z)
