@@ -1,9 +1,9 @@
-"""What a moving sphere costs over the fluid's own step, as a ratio within one run.
+"""What a moving sphere costs over the fluid's own step, and what two steps at once and a quarter of the box save.
 
     python -m benchmarks.sphere_cost [--rounds 15] [--json FILE]
 
-Each round times the bare step, the step with the sphere, and the sphere's parts, one after the other; the table
-shows medians of the rounds' own ratios. float32; the bare fluid makes one step a sweep, as it does with a sphere.
+Each round times, one after the other, the bare step, the step with the sphere, its parts, and a step of two made
+at once; the table shows medians of the rounds' own ratios. float32; the bare fluid makes one step a sweep.
 """
 
 from __future__ import annotations
@@ -22,50 +22,66 @@ from lbm import Body, Rates, Simulation
 from lbm.spheres import Sphere, Spheres
 from restitution.files import write_whole
 
-BOXES = {10: (80, 80, 240), 20: (160, 160, 480)}
-"""Cells of the box by cells of the diameter."""
+BOXES = {
+    "10": (10, (80, 80, 240)),
+    "10, a quarter": (10, (40, 40, 240)),
+    "20": (20, (160, 160, 480)),
+    "20, a quarter": (20, (80, 80, 480)),
+}
+"""Cells of the diameter and of the box."""
 TARGETS = {10: 0.15, 20: 0.10}
 _STEPS = 10
 
 
 class _Timed(Body):
-    """A body whose calls are timed."""
+    """A body whose calls are timed; it says what it reaches only if two steps are to be made at once."""
 
-    def __init__(self, body):
-        self.body, self.seconds = body, 0.0
+    def __init__(self, body, at_once=False):
+        self.body, self.at_once, self.seconds = body, at_once, 0.0
 
     def __call__(self, lattice, step, force):
         start = time.perf_counter()
         self.body(lattice, step, force)
         self.seconds += time.perf_counter() - start
 
+    def reach(self, lattice):
+        return self.body.reach(lattice) if self.at_once else None
+
     def describe(self) -> dict:
         return {}
 
 
-def measure(diameter: int, shape: tuple[int, int, int], rounds: int) -> dict:
+def measure(name: str, rounds: int) -> dict:
     """Seconds a step, and the shares of the sphere and of its kernels in the bare step."""
-    rates = Rates.two_relaxation_times(0.02)
-    bare = Simulation(shape, rates, faces={"z": "no-slip"}, dtype=np.float32)
-    bare.add(_Timed(lambda lattice, step, force: None))  # a body, so that both make one step a sweep
-    full = Simulation(shape, rates, faces={"z": "no-slip"}, dtype=np.float32)
-    full.lattice.populations = bare.lattice.populations  # the same memory for both
-    centre = tuple(n / 2 + 0.17 for n in shape)
-    ball = Spheres([Sphere(diameter / 2, 8.0, centre, velocity=(0.0, 0.0, -0.05))], gravity=(0.0, 0.0, -1e-5))
-    timed = _Timed(ball)
-    full.add(timed)
-    bare.run(2)
-    full.run(2)
+    diameter, shape = BOXES[name]
+    sides = {"x": "free-slip", "y": "free-slip"} if "quarter" in name else {}
+    place = (0, 0) if sides else (shape[0] / 2 + 0.17, shape[1] / 2 + 0.17)
+    bodies = [_Timed(lambda lattice, step, force: None)]
+    for at_once in (False, True):
+        sphere = Sphere(diameter / 2, 8.0, (*place, shape[2] / 2 + 0.17), velocity=(0.0, 0.0, -0.05))
+        bodies.append(_Timed(Spheres([sphere], gravity=(0.0, 0.0, -1e-5)), at_once))
+    flows = []
+    for body in bodies:
+        flow = Simulation(
+            shape, Rates.two_relaxation_times(0.02), faces={"z": "no-slip", **sides}, dtype=np.float32
+        )
+        if flows:
+            flow.lattice.populations = flows[0].lattice.populations  # the same memory for all
+        flow.add(body)
+        flow.run(2)
+        flows.append(flow)
     seconds = []
     for _ in range(rounds):
-        start = time.perf_counter()
-        bare._advance(bare.steps + _STEPS)
-        middle = time.perf_counter()
-        timed.seconds = 0.0
-        full._advance(full.steps + _STEPS)
-        seconds.append((middle - start, time.perf_counter() - middle, timed.seconds))
-    plain, whole, own = np.array(seconds).T / _STEPS
+        times = []
+        bodies[1].seconds = 0.0
+        for flow in flows:
+            start = time.perf_counter()
+            flow._advance(flow.steps + _STEPS)
+            times.append(time.perf_counter() - start)
+        seconds.append((*times, bodies[1].seconds))
+    plain, whole, twice, own = np.array(seconds).T / _STEPS
     return {
+        "name": name,
         "diameter": diameter,
         "shape": list(shape),
         "threads": numba.get_num_threads(),
@@ -74,6 +90,8 @@ def measure(diameter: int, shape: tuple[int, int, int], rounds: int) -> dict:
         "sphere_s": float(np.median(own)),
         "sphere_share": float(np.median(own / plain)),
         "step_ratio": float(np.median(whole / plain)),
+        "at_once_s": float(np.median(twice)),
+        "at_once_gain": float(np.median(whole / twice)),
         "target": TARGETS[diameter],
     }
 
@@ -81,19 +99,23 @@ def measure(diameter: int, shape: tuple[int, int, int], rounds: int) -> dict:
 def main() -> None:
     """Measure, print the table, write the JSON."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--diameter", type=int, nargs="+", choices=BOXES, default=list(BOXES))
+    parser.add_argument("--box", nargs="+", choices=BOXES, default=list(BOXES))
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--json", type=Path, default=Path("benchmarks/sphere_cost.json"))
     arguments = parser.parse_args()
-    table = Table("d", "box", "threads", "bare step", "sphere", "sphere / bare", "step / bare", "target")
+    table = Table(
+        "d", "box", "threads", "bare step", "sphere", "sphere / bare", "step / bare", "target",
+        "of two at once", "gain",
+    )  # fmt: skip
     results = []
-    for diameter in arguments.diameter:
-        row = measure(diameter, BOXES[diameter], arguments.rounds)
+    for name in arguments.box:
+        row = measure(name, arguments.rounds)
         results.append(row)
         table.add_row(
-            str(diameter), " x ".join(map(str, row["shape"])), str(row["threads"]),
+            name, " x ".join(map(str, row["shape"])), str(row["threads"]),
             f"{row['bare_step_s'] * 1e3:.2f} ms", f"{row['sphere_s'] * 1e3:.3f} ms",
             f"{row['sphere_share']:.1%}", f"{row['step_ratio']:.3f}", f"{row['target']:.0%}",
+            f"{row['at_once_s'] * 1e3:.2f} ms", f"{row['at_once_gain']:.2f}",
         )  # fmt: skip
     Console(width=115).print(table)
     write_whole(arguments.json, json.dumps(results, indent=1) + "\n")

@@ -70,13 +70,17 @@ class Simulation(Flow):
         self.threads = arguments.threads(threads, math.prod(self.shape))
         self._face_passes = passes.passes(self.faces, self.lattice.grid)
         self._scaled_rates = rates.scaled(self.dtype)
+        self._planes = np.arange(self.shape[2])
 
     def compile(self) -> float:
         """Compile, or load from the cache, the kernels this simulation needs; seconds taken."""
         start = time.perf_counter()
-        lattice, force = self.lattice, self._typed(self._force_at(0.0))
-        kernels.sweep(lattice.populations, lattice.grid, lattice.rows, 0, self._scaled_rates, force, 0)
-        kernels.sweep_two(lattice.populations, lattice.grid, lattice.rows, self._scaled_rates, force, 1, 1, 0)
+        lattice, force = self.lattice, self._force_at(0.0)
+        self._sweep(self._planes[:0], force)
+        kernels.sweep_two(
+            lattice.populations, lattice.grid, lattice.rows, self._scaled_rates, self._typed(force),
+            1, 1, 0, np.zeros(0, np.bool_),
+        )  # fmt: skip
         return time.perf_counter() - start
 
     def run(
@@ -155,30 +159,62 @@ class Simulation(Flow):
 
     def _advance(self, until: int) -> None:
         """Step to ``until``, or to the first whole step after Ctrl-C."""
-        lattice = self.lattice
-        corrections = (*self._face_passes, *self.bodies)
-        plain = not corrections and not callable(self.given_force)
-        force = self._force_at(float(self.steps))
-        typed = self._typed(force)
-        planes = self.shape[2]
-        blocks = max(1, min(self.threads, planes // arguments.SMALLEST))
-        tile = max(8, _TILE_BYTES // (3 * Q * lattice.grid.row * lattice.dtype.itemsize))
-        grid, rows, rates = lattice.grid, lattice.rows, self._scaled_rates
         with interrupts_deferred() as held:
             while self.steps < until and not held:
-                if plain and lattice.parity == 0 and until - self.steps >= 2:
-                    with self._changing():
-                        kernels.sweep_two(lattice.populations, grid, rows, rates, typed, blocks, tile, planes)
-                        self._steps += 2
-                    continue
-                if callable(self.given_force):
-                    force = self._force_at(float(self.steps))
-                    typed = self._typed(force)
-                for change in corrections:
-                    change.prepare(lattice, self.steps)
-                with self._changing():
-                    kernels.sweep(lattice.populations, grid, rows, lattice.parity, rates, typed, planes)
-                    lattice.parity ^= 1
-                    for change in corrections:
-                        change(lattice, self.steps, force)
-                    self._steps += 1
+                near = self._near_bodies() if self.lattice.parity == 0 and until - self.steps >= 2 else None
+                if near is None:
+                    self._step()
+                else:
+                    self._step_twice(near)
+
+    def _near_bodies(self) -> np.ndarray | None:
+        """Numbers of the planes that bodies reach; None where two steps cannot be made at once."""
+        reached = [body.reach(self.lattice) for body in self.bodies]
+        if self._face_passes or callable(self.given_force) or any(planes is None for planes in reached):
+            return None
+        return np.unique(np.concatenate([self._planes[:0], *reached]))
+
+    def _step(self) -> None:
+        """One step of the fluid, then faces and bodies."""
+        lattice, force = self.lattice, self._force_at(float(self.steps))
+        corrections = (*self._face_passes, *self.bodies)
+        for change in corrections:
+            change.prepare(lattice, self.steps)
+        with self._changing():
+            self._sweep(self._planes, force)
+            lattice.parity ^= 1
+            for change in corrections:
+                change(lattice, self.steps, force)
+            self._steps += 1
+
+    def _step_twice(self, near: np.ndarray) -> None:
+        """Two steps from parity 0 in one pass over memory, ahead of which go the planes ``near`` bodies."""
+        lattice, force = self.lattice, self._force_at(float(self.steps))
+        blocks = max(1, min(self.threads, self.shape[2] // arguments.SMALLEST))
+        tile = max(8, _TILE_BYTES // (3 * Q * lattice.grid.row * lattice.dtype.itemsize))
+        made = np.zeros(self.shape[2], np.bool_)
+        made[near] = True
+        for body in self.bodies:
+            body.prepare(lattice, self.steps)
+            body.prepare(lattice, self.steps + 1)
+        with self._changing():
+            self._sweep(near, force)
+            lattice.parity = 1
+            for body in self.bodies:
+                body(lattice, self.steps, force)
+            kernels.sweep_two(
+                lattice.populations, lattice.grid, lattice.rows, self._scaled_rates, self._typed(force),
+                blocks, tile, self.shape[2], made,
+            )  # fmt: skip
+            lattice.parity = 0
+            for body in self.bodies:
+                body(lattice, self.steps + 1, force)
+            self._steps += 2
+
+    def _sweep(self, planes: np.ndarray, force) -> None:
+        """Collide and stream ``planes``."""
+        lattice = self.lattice
+        kernels.sweep(
+            lattice.populations, lattice.grid, lattice.rows, lattice.parity, self._scaled_rates,
+            self._typed(force), planes,
+        )  # fmt: skip

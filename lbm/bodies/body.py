@@ -24,7 +24,7 @@ class Body(Protocol):
     """Called after every step; says what a restart must find again.
 
     A body is derived from this class, or has all of its methods. What nothing of changes in time needs only
-    ``__call__`` and ``describe`` of its own.
+    ``__call__`` and ``describe`` of its own, and :meth:`reach` for speed.
     """
 
     @abstractmethod
@@ -39,8 +39,18 @@ class Body(Protocol):
         """What must agree at a restart, in JSON's terms: numbers, strings, lists and dictionaries."""
 
     def prepare(self, lattice: Lattice, step: int) -> None:
-        """Called when the body is added and before every step, when an error leaves the flow as it was."""
+        """Called when the body is added and before every step, when an error leaves the flow as it was.
+
+        Two steps that are made at once (:meth:`reach`) are both prepared before the first.
+        """
         return
+
+    def reach(self, lattice: Lattice) -> np.ndarray | None:
+        """Numbers of the planes z in which the next call may read or change populations; None: in any of them.
+
+        Where all bodies know it, the flow far from them makes two steps while its populations are in the cache.
+        """
+        return None
 
     def state(self) -> dict[str, np.ndarray]:
         """What changes in time, as arrays of numbers; a checkpoint keeps them bit for bit."""

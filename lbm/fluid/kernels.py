@@ -47,6 +47,8 @@ def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
             # a constant length: compiled to vectors without a remainder
             for i in range(line):
                 _step_cell(populations, starts, first_x + i, rates, force)
+        if whole < grid.nx:
+            prefetch_cell(populations, starts, whole + _AHEAD * line)
         for x in range(whole, grid.nx):
             _step_cell(populations, starts, x, rates, force)
         give_back(populations, grid, rows, parity, y, z)
@@ -54,19 +56,22 @@ def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
 
 @kernel
 def sweep(populations, grid, rows, parity, rates, force, planes):
-    """One time step of ``planes`` planes (all, or 0 to compile only)."""
-    for plane in prange(planes):
-        _step_rows(populations, grid, rows, parity, 0, grid.ny, np.int64(plane), rates, force)
+    """One time step of the ``planes`` of these numbers (none to compile only)."""
+    for n in prange(planes.shape[0]):
+        _step_rows(populations, grid, rows, parity, 0, grid.ny, planes[n], rates, force)
 
 
 @kernel
-def sweep_two(populations, grid, rows, rates, force, blocks, tile, planes):
-    """Two time steps from parity 0 in one pass over memory.
+def sweep_two(populations, grid, rows, rates, force, blocks, tile, planes, made):
+    """Two time steps from parity 0 in one pass over memory; in planes that are ``made`` the even one is behind.
 
     The odd step of row (y, z) needs the even step of the rows around it. Each of ``blocks`` slabs of planes
     is swept in strips of ``tile`` rows; behind the even step of plane z follows the odd step of plane z - 1,
     one row behind as well, while its populations are still in the cache. Rows next to another slab or to the
     faces in y wait for the end. Every row is computed from the same values as by two sweeps: same result.
+
+    An even step stays within its plane, so around a body it may go ahead: what the body changes between the two
+    steps is then there before the odd step comes by.
     """
     ny = grid.ny
     for block_ in prange(blocks):
@@ -75,7 +80,8 @@ def sweep_two(populations, grid, rows, rates, force, blocks, tile, planes):
         for first in range(0, ny, tile):
             last = min(ny, first + tile)
             for z in range(low, high):
-                _step_rows(populations, grid, rows, 0, first, last, z, rates, force)
+                if not made[z]:
+                    _step_rows(populations, grid, rows, 0, first, last, z, rates, force)
                 if z - 1 > low:
                     _step_rows(populations, grid, rows, 1, max(1, first - 1), last - 1, z - 1, rates, force)
         for z in range(low + 1, high - 1):

@@ -181,6 +181,13 @@ class Spheres(Body):
                 if np.linalg.norm(apart) < r + self.radii[other]:
                     raise InputError(f"spheres {other} and {s} overlap")
 
+    def reach(self, lattice: Lattice) -> np.ndarray:
+        """The planes with links and refilled cells, their neighbours, and the neighbours of these."""
+        n, periodic = lattice.grid.nz, lattice.grid.z_low == PERIODIC
+        ends = zip(self.centres[:, 2] - self.radii - 3, self.centres[:, 2] + self.radii + 3, strict=True)
+        planes = np.concatenate([np.arange(math.floor(low), math.ceil(high)) for low, high in ends])
+        return planes % n if periodic else planes[(planes >= 0) & (planes < n)]
+
     def __call__(self, lattice: Lattice, step: int, force) -> None:
         """Exchange momentum, move, refill."""
         grid, populations, parity = lattice.grid, lattice.populations, lattice.parity
