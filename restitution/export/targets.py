@@ -6,18 +6,14 @@ import difflib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.export.closure import Closure
-from restitution.export.dem import Request, lammps, lammps_drop_test, liggghts, yade
+from restitution.export.dem import Request, lammps, liggghts, yade
+from restitution.export.drops import PROGRAMS, Program
 from restitution.export.impacts import Impacts, impacts_of
 from restitution.export.languages import LANGUAGES, source_code
 from restitution.export.tables import csv_table, json_record
-
-_DROPS = 8
-"""Impact speeds of a drop test."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +22,6 @@ class Options:
 
     derivative: bool = False
     bare: bool = False
-    drop_test: bool = False
     conditions: Conditions | None = None
     e_dry: float | None = None
     request: Request = field(default_factory=lambda: Request(0, None, 0.02, (20.0, 1000.0)))
@@ -34,12 +29,16 @@ class Options:
 
 @dataclass(frozen=True)
 class Target:
-    """``takes``: which options it needs, in words. ``text`` makes the file's content."""
+    """``takes``: which options it needs, in words. ``text`` makes the file's content.
+
+    ``program``: where what it delivers can be measured.
+    """
 
     key: str
     title: str
     takes: str
     text: Callable[[Closure, Options], str]
+    program: Program | None = None
 
 
 def _language(key: str) -> Target:
@@ -54,15 +53,10 @@ def _language(key: str) -> Target:
 
 def _dem(key: str, title: str, text: Callable[[Impacts, Request], str]) -> Target:
     def make(closure: Closure, options: Options) -> str:
-        pair = impacts_of(closure, options.conditions, options.e_dry, key)
-        if not options.drop_test:
-            return text(pair, options.request)
-        if key != "lammps" or options.conditions.partner is not None:
-            raise InputError(Defect("is written for lammps and a wall only", field="--drop-test"))
-        speeds = np.geomspace(*options.request.stokes, _DROPS) / pair.per_speed
-        return lammps_drop_test(pair, options.request, speeds)
+        return text(impacts_of(closure, options.conditions, options.e_dry, key), options.request)
 
-    return Target(key, title, "--fluid --sphere, --level 0 --speed V or --level 1 [--st-range]", make)
+    takes = "--fluid --sphere, --level 0 --speed V or --level 1, 2 [--st-range] [--drop-test]"
+    return Target(key, title, takes, make, PROGRAMS[key])
 
 
 TARGETS: dict[str, Target] = {
@@ -81,9 +75,13 @@ TARGETS: dict[str, Target] = {
             "[--derivative]",
             lambda closure, options: json_record(closure, options.derivative),
         ),
-        _dem("lammps", "LAMMPS granular: constant e; level 1 without tension [--drop-test]", lammps),
-        _dem("liggghts", "LIGGGHTS, CFDEMcoupling: constant e; level 1 its viscous contact, refitted", liggghts),
-        _dem("yade", "YADE: constant e; level 1 its lubrication law, refitted", yade),
+        _dem("lammps", "LAMMPS granular: constant e; 1: no tension; 2: e(St), Python", lammps),
+        _dem(
+            "liggghts",
+            "LIGGGHTS, CFDEMcoupling: constant e; 1: viscous, refitted; 2: e(St), C++",
+            liggghts,
+        ),
+        _dem("yade", "YADE: constant e; 1: its lubrication law, refitted; 2: e(St), Python", yade),
     )
 }
 RESOLVE_THE_FILM = {

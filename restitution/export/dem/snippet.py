@@ -38,10 +38,11 @@ def constant_of(impacts: Impacts, request: Request) -> Constant:
     return constant_at(impacts, request.speed, request.within)
 
 
-def check_level(request: Request, target: str, most: int) -> None:
+def check_level(request: Request, target: str, levels: tuple[int, ...]) -> None:
     """Refuse a level that a target has not."""
-    if not 0 <= request.level <= most:
-        raise InputError(Defect(f"{target} has levels 0 to {most}", field="--level", value=str(request.level)))
+    if request.level not in levels:
+        known = " and ".join(map(str, levels))
+        raise InputError(Defect(f"{target} has level {known}", field="--level", value=str(request.level)))
 
 
 def fastest(impacts: Impacts, request: Request) -> float:
@@ -70,13 +71,13 @@ def range_lines(impacts: Impacts, constant: Constant) -> list[str]:
     return lines
 
 
-def comments(impacts: Impacts, target: str, version: str, lines: list[str]) -> str:
-    """The heading of a text, and what is to be said of this target."""
+def comments(impacts: Impacts, target: str, version: str, lines: list[str], sign: str = "#") -> str:
+    """The heading of a text, and what is to be said of this target; indented lines are commands, kept whole."""
     said = [*heading(impacts.closure, target, version), *pair_lines(impacts.conditions)]
     said.append(f"e_dry {impacts.e_dry:g}")
     for line in lines:
-        said += textwrap.wrap(line, WIDTH, subsequent_indent="    ")
-    return "".join(f"# {line}\n" for line in said)
+        said += [line] if line.startswith(" ") else textwrap.wrap(line, WIDTH, subsequent_indent="    ")
+    return "".join(f"{sign} {line}\n" for line in said)
 
 
 def stokes_points(request: Request, n: int = 9) -> np.ndarray:
