@@ -45,7 +45,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--level", type=int, default=0, choices=(0, 1, 2),
         help="0: constant e; 1: the code's own law, refitted; 2: e(St) of the speed at first contact",
     )  # fmt: skip
-    parser.add_argument("--speed", type=float, metavar="V", help="level 0: impact speed in m/s that e is taken at")
+    parser.add_argument(
+        "--speed", type=float, metavar="V", help="impact speed in m/s: that e of level 0 or a film law is taken at"
+    )
+    parser.add_argument("--cells", type=float, metavar="N", help="walberla, lethe: cells a diameter")
+    parser.add_argument(
+        "--modulus", type=float, metavar="E", help="film laws: reduced modulus E* of the two bodies in Pa"
+    )
     parser.add_argument(
         "--within", type=float, default=0.02, metavar="X", help="level 0: error of e that bounds its range (0.02)"
     )
@@ -77,7 +83,7 @@ def stokes_range(text: str) -> tuple[float, float]:
 def run(args: argparse.Namespace) -> None:
     """Print or write the exported text."""
     from restitution.errors import Defect, InputError
-    from restitution.export import TARGETS, Options, Request, closure_of, target
+    from restitution.export import TARGETS, FilmRequest, Options, Request, closure_of, target
 
     if args.list:
         show_rows(("target", "what", "takes"), [(t.key, t.title, t.takes) for t in TARGETS.values()])
@@ -87,18 +93,24 @@ def run(args: argparse.Namespace) -> None:
     if args.to is None:
         raise InputError(Defect(f"is needed: one of {', '.join(TARGETS)}", field="--to"))
     wanted = target(args.to)
-    for option, value in (("--speed", args.speed), ("--within", args.within)):
+    for option, value in _numbers(args):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(Defect("must be positive and finite", field=option, value=f"{value:g}"))
     _check_place(args)
     closure = closure_of(args.law, dict(args.parameters), dict(args.of))
     request = Request(args.level, args.speed, args.within, args.st_range)
     conditions = conditions_of(args)
-    given = Options(args.derivative, args.bare, conditions, args.e_dry, request)
+    film = FilmRequest(args.cells, args.speed, args.modulus)
+    given = Options(args.derivative, args.bare, conditions, args.e_dry, request, film)
     if args.drop_test:
         _drop(wanted, closure, given, args.out)
     else:
         _put(wanted.text(closure, given), args.out)
+
+
+def _numbers(args: argparse.Namespace) -> list[tuple[str, float | None]]:
+    """Options that must be positive."""
+    return [(f"--{name}", getattr(args, name)) for name in ("speed", "within", "cells", "modulus")]
 
 
 def _put(text: str, place: str | None) -> None:

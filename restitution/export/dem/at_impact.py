@@ -36,12 +36,12 @@ def restitution_call(impacts: Impacts, of: Mapping[str, str], pair: bool) -> str
     return f"{name}({', '.join([stokes, *dry])})"
 
 
-def level_2_lines(impacts: Impacts) -> list[str]:
-    """What is to be said of every text of level 2."""
+def level_2_lines(impacts: Impacts, dashpot: bool = True) -> list[str]:
+    """What is to be said of every text of level 2; ``dashpot``: e is delivered by one."""
     low, high = impacts.closure.validity
+    least = f"; an e below {LEAST_E:g} is delivered as {LEAST_E:g}" if dashpot else ""
     return [
-        "e is that of the normal speed at first contact, kept until the contact ends; beyond "
-        f"{low:.4g} <= St <= {high:.4g} the law's formula goes on, in_range says so, and an e below {LEAST_E:g} "
-        f"is delivered as {LEAST_E:g}",
+        f"e is that of the normal speed at first contact; beyond {low:.4g} <= St <= {high:.4g} the law's formula goes "
+        f"on and in_range says so{least}",
         "the numbers of fluid and e_dry below are those of the pair above: change them there, in SI units",
     ]

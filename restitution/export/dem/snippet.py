@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
 from dataclasses import dataclass
 
 import numpy as np
 
 from restitution.errors import Defect, InputError
 from restitution.export.dem.constant import Constant, best_constant, constant_at
-from restitution.export.heading import WIDTH, heading
+from restitution.export.heading import comment_lines
 from restitution.export.impacts import Impacts
 from restitution.export.tables import pair_lines
 
@@ -73,11 +72,8 @@ def range_lines(impacts: Impacts, constant: Constant) -> list[str]:
 
 def comments(impacts: Impacts, target: str, version: str, lines: list[str], sign: str = "#") -> str:
     """The heading of a text, and what is to be said of this target; indented lines are commands, kept whole."""
-    said = [*heading(impacts.closure, target, version), *pair_lines(impacts.conditions)]
-    said.append(f"e_dry {impacts.e_dry:g}")
-    for line in lines:
-        said += [line] if line.startswith(" ") else textwrap.wrap(line, WIDTH, subsequent_indent="    ")
-    return "".join(f"{sign} {line}\n" for line in said)
+    pair = [*pair_lines(impacts.conditions), f"e_dry {impacts.e_dry:g}"]
+    return comment_lines(impacts.closure, target, version, [*pair, *lines], sign)
 
 
 def stokes_points(request: Request, n: int = 9) -> np.ndarray:
