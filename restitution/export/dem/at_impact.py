@@ -41,7 +41,7 @@ def level_2_lines(impacts: Impacts, dashpot: bool = True) -> list[str]:
     low, high = impacts.closure.validity
     least = f"; an e below {LEAST_E:g} is delivered as {LEAST_E:g}" if dashpot else ""
     return [
-        f"e is that of the normal speed at first contact; beyond {low:.4g} <= St <= {high:.4g} the law's formula goes "
-        f"on and in_range says so{least}",
+        f"e is that of the normal speed at first contact; beyond {low:.4g} <= St <= {high:.4g} the law's formula "
+        f"goes on and in_range says so{least}",
         "the numbers of fluid and e_dry below are those of the pair above: change them there, in SI units",
     ]

@@ -1,6 +1,7 @@
 """What the programs deliver, measured by drop tests.
 
 Read :mod:`.measure`, then :mod:`.deck`, then a program: :mod:`.lammps`, :mod:`.liggghts`, :mod:`.yade`.
+:mod:`.kept` is the table of what was measured, for the report.
 """
 
 from restitution.export.drops.deck import Deck, Installed, NotInstalledError, Program, run_deck

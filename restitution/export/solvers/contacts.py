@@ -43,8 +43,8 @@ def openlb(impacts: Impacts, request: Request) -> str:
     """A C++ function of the contact's initial normal speed, which every contact of OpenLB stores."""
     check_level(request, "openlb", (2,))
     slowed = [] if impacts.closure.speed is Speed.CONTACT else [
-        f"this law takes a speed that is {impacts.closure.speed}; OpenLB gives the one at contact, which the resolved "
-        "flow has slowed already: that part of the loss counts twice. A fit with --speed contact avoids it"
+        f"this law takes a speed that is {impacts.closure.speed}; OpenLB gives the one at contact, which the "
+        "resolved flow has slowed already: that part of the loss counts twice. A fit with --speed contact does not"
     ]  # fmt: skip
     fluid = at_impact.fluid_numbers(impacts)
     of = {n: n for n in ("v", "d", "rho_p", "d_1", "rho_1", "d_2", "rho_2", *fluid)}
