@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.commands.console import show_rows
+from restitution.commands.console import show, show_rows
 from restitution.commands.predict import conditions_of, values
+
+if TYPE_CHECKING:
+    from restitution.export import Closure, Options
+    from restitution.export.targets import Target
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -37,17 +42,28 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="which of a fit's separate parameters",
     )  # fmt: skip
     parser.add_argument(
-        "--level", type=int, default=0, choices=(0, 1, 2), help="0: constant e; 1: the code's own law, refitted"
+        "--level", type=int, default=0, choices=(0, 1, 2),
+        help="0: constant e; 1: the code's own law, refitted; 2: e(St) of the speed at first contact",
+    )  # fmt: skip
+    parser.add_argument(
+        "--speed", type=float, metavar="V", help="impact speed in m/s: that e of level 0 or a film law is taken at"
     )
-    parser.add_argument("--speed", type=float, metavar="V", help="level 0: impact speed in m/s that e is taken at")
+    parser.add_argument("--cells", type=float, metavar="N", help="walberla, lethe: cells a diameter")
+    parser.add_argument(
+        "--modulus", type=float, metavar="E", help="film laws: reduced modulus E* of the two bodies in Pa"
+    )
     parser.add_argument(
         "--within", type=float, default=0.02, metavar="X", help="level 0: error of e that bounds its range (0.02)"
     )
     parser.add_argument(
         "--st-range", type=stokes_range, default=(20.0, 1000.0), metavar="LOW:HIGH",
-        help="level 1: Stokes numbers of the law that it is refitted for (20:1000)",
+        help="Stokes numbers of the law: that level 1 is refitted for, that stiffness and drops are for (20:1000)",
     )  # fmt: skip
-    parser.add_argument("--drop-test", action="store_true", help="lammps: a script that prints the e delivered")
+    parser.add_argument(
+        "--drop-test", action="store_true",
+        help="lammps, liggghts, yade: drop spheres on a wall there and print the e delivered; without the program "
+        "the input that would do so",
+    )  # fmt: skip
     parser.add_argument("--out", metavar="FILE")
     parser.add_argument("--force", action="store_true", help="replace FILE where it exists")
     parser.set_defaults(run=run)
@@ -67,8 +83,7 @@ def stokes_range(text: str) -> tuple[float, float]:
 def run(args: argparse.Namespace) -> None:
     """Print or write the exported text."""
     from restitution.errors import Defect, InputError
-    from restitution.export import TARGETS, Options, Request, closure_of, target
-    from restitution.files import write_whole
+    from restitution.export import TARGETS, FilmRequest, Options, Request, closure_of, target
 
     if args.list:
         show_rows(("target", "what", "takes"), [(t.key, t.title, t.takes) for t in TARGETS.values()])
@@ -78,20 +93,61 @@ def run(args: argparse.Namespace) -> None:
     if args.to is None:
         raise InputError(Defect(f"is needed: one of {', '.join(TARGETS)}", field="--to"))
     wanted = target(args.to)
-    for option, value in (("--speed", args.speed), ("--within", args.within)):
+    for option, value in _numbers(args):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(Defect("must be positive and finite", field=option, value=f"{value:g}"))
     _check_place(args)
     closure = closure_of(args.law, dict(args.parameters), dict(args.of))
     request = Request(args.level, args.speed, args.within, args.st_range)
     conditions = conditions_of(args)
-    text = wanted.text(
-        closure, Options(args.derivative, args.bare, args.drop_test, conditions, args.e_dry, request)
-    )
-    if args.out is None:
+    film = FilmRequest(args.cells, args.speed, args.modulus)
+    given = Options(args.derivative, args.bare, conditions, args.e_dry, request, film)
+    if args.drop_test:
+        _drop(wanted, closure, given, args.out)
+    else:
+        _put(wanted.text(closure, given), args.out)
+
+
+def _numbers(args: argparse.Namespace) -> list[tuple[str, float | None]]:
+    """Options that must be positive."""
+    return [(f"--{name}", getattr(args, name)) for name in ("speed", "within", "cells", "modulus")]
+
+
+def _put(text: str, place: str | None) -> None:
+    """Write a text to its place, or print it."""
+    from restitution.files import write_whole
+
+    if place is None:
         sys.stdout.write(text)
     else:
-        write_whole(args.out, text)
+        write_whole(place, text)
+
+
+def _drop(wanted: Target, closure: Closure, given: Options, place: str | None) -> None:
+    """Run a drop test and show what is delivered; without the program print its input and say what is missing."""
+    from restitution.export.drops.measure import NotInstalledError, drop_test
+    from restitution.export.impacts import impacts_of
+
+    impacts = impacts_of(closure, given.conditions, given.e_dry, wanted.key)
+    test = drop_test(wanted.key, wanted.program, impacts, given.request)
+    if place is not None:
+        _put(test.deck.files[test.deck.main], place)
+    try:
+        version, drops = test.run()
+    except NotInstalledError as error:
+        print(f"not run: {error}", file=sys.stderr)  # noqa: T201
+        if place is None:
+            _put(test.deck.files[test.deck.main], None)
+        return
+    show(f"{wanted.program.title} {version}, level {given.request.level}: e asked by the exported text, delivered")
+    rows = [
+        (f"{d.speed:.4g}", f"{d.stokes:.4g}", *(f"{e:.4f}" for e in (d.law, d.asked, d.delivered)),
+         f"{d.delivered - d.asked:+.4f}")
+        for d in drops
+    ]  # fmt: skip
+    show_rows(("m/s", "St", "law", "asked", "delivered", "deviation"), rows)
+    worst, far = (max(abs(d.delivered - e(d)) for d in drops) for e in (lambda d: d.asked, lambda d: d.law))
+    show(f"greatest deviation from what is asked {worst:.4f}, from the law {far:.4f}")
 
 
 def _check_place(args: argparse.Namespace) -> None:

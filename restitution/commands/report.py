@@ -9,7 +9,7 @@ from restitution.commands.console import show
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Declare ``report fig1``, ``report fig2`` and ``report all``."""
+    """Declare ``report fig1``, ``report fig2``, ``report all`` and ``report export``."""
     parser = commands.add_parser(
         "report", help="regenerate a comparison report", description="Comparison reports."
     )
@@ -35,6 +35,19 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     add.add_argument("--out", metavar="FOLDER", default="reports/fig2", help="where to write it (reports/fig2)")
     _add_making(add)
     add.set_defaults(run=run_fig2)
+
+    add = reports.add_parser(
+        "export",
+        help="e asked and e delivered by LAMMPS, LIGGGHTS and YADE, of an exported law",
+        description="e asked and e delivered of an exported law, from the kept table delivered.csv in the folder.",
+    )
+    add.add_argument(
+        "--out", metavar="FOLDER", default="reports/export", help="where it is kept and written (reports/export)"
+    )
+    add.add_argument(
+        "--measure", action="store_true", help="first run the programs that are installed, and keep what they give"
+    )
+    add.set_defaults(run=run_export)
 
     add = reports.add_parser(
         "all",
@@ -78,6 +91,23 @@ def run_fig1(args: argparse.Namespace) -> None:
     if not args.out:
         raise InputError(Defect("names no folder", field="--out"))
     for name in report.write(args.out, Speed(args.speed), args.runs):
+        show(str(Path(args.out) / name))
+
+
+def run_export(args: argparse.Namespace) -> None:
+    """Write the report of e asked and delivered and name its files."""
+    import sys
+
+    from restitution.errors import Defect, InputError
+    from restitution.report.delivered import report
+
+    if not args.out:
+        raise InputError(Defect("names no folder", field="--out"))
+
+    def say(text: str) -> None:
+        print(text, file=sys.stderr)  # noqa: T201
+
+    for name in report.write(args.out, args.measure, say):
         show(str(Path(args.out) / name))
 
 

@@ -3,7 +3,8 @@
 :mod:`.closure` is what is exported, a law of the registry or, by :mod:`.fitted`, a fit; :mod:`.heading` the words
 that go with it, :mod:`.self_check` the table that a file checks itself by. :mod:`.functions` says which functions
 a file gets, :mod:`.languages` writes them; :mod:`.tables` writes CSV and JSON. With fluid and sphere a closure
-becomes :mod:`.impacts` of one pair, which :mod:`.dem` needs; :mod:`.dashpot` inverts spring-dashpot contacts.
+becomes :mod:`.impacts` of one pair, which :mod:`.dem` and :mod:`.solvers` need; :mod:`.drops` measures what
+programs deliver of it; :mod:`.dashpot` inverts spring-dashpot contacts.
 :mod:`.targets` has them all by name.
 
     export("eq4_exponential", "c")                          source code, as text
@@ -19,12 +20,14 @@ from restitution.export.closure import Closure, law_closure
 from restitution.export.dashpot import Dashpot, dashpot
 from restitution.export.dem import Request
 from restitution.export.fitted import fit_closure
+from restitution.export.solvers import FilmRequest
 from restitution.export.targets import TARGETS, Options, target
 
 __all__ = [
     "TARGETS",
     "Closure",
     "Dashpot",
+    "FilmRequest",
     "Options",
     "Request",
     "closure_of",

@@ -52,8 +52,6 @@ class Spring(StrEnum):
     """k x^(3/2), damped by c x^(1/4) x'."""
 
 
-LEAST_TYPED = math.exp(-2.0)
-"""What a code delivers that cuts the tension and takes e by the overlap rule, as e typed goes to zero: 0.135."""
 _LARGEST_RATIO = 1e6
 """Damping ratio beyond which no contact is sought; e is about 1/(4 zeta^2) there, 2.5e-13."""
 _UNDAMPED_HERTZ = 4 * math.sqrt(math.pi) * math.gamma(0.4) / (5 * math.gamma(0.9))
@@ -85,35 +83,44 @@ def damping_ratio(e: float, end: End | str = End.OVERLAP) -> float:
         raise InputError(Defect("a spring and a dashpot deliver 0 < e <= 1", field="e", value=f"{e:g}"))
     if End(end) is End.OVERLAP:
         return -math.log(e) / math.hypot(math.pi, math.log(e))
-    from scipy.optimize import brentq
-
     if e == 1:
         return 0.0
     if e < restitution(_LARGEST_RATIO, End.FORCE):
         raise InputError(Defect("is too small for a dashpot", field="e", value=f"{e:g}"))
-    # Logarithms on both sides keep relative accuracy at either end.
-    sought = math.log(-math.log(e))
-    excess = brentq(
-        lambda x: math.log(2 * math.exp(x) * _angle_over_sine(math.exp(x))) - sought,
-        math.log(1e-18),
-        math.log(_LARGEST_RATIO),
-        xtol=1e-15,
-        rtol=1e-14,
-    )
-    return math.exp(excess)
+    return _ratio_of_a_contact_that_does_not_pull(e)
 
 
-def typed(e: float) -> float:
+def _ratio_of_a_contact_that_does_not_pull(e: float) -> float:
+    """The damping ratio of 0 < e < 1 where the contact ends with the force, by bisection of its logarithm."""
+    low, high, sought = math.log(1e-18), math.log(1e6), -math.log(e)
+    while low < (low + high) / 2 < high:
+        middle = (low + high) / 2
+        ratio = math.exp(middle)
+        if 2 * ratio * _angle_over_sine(ratio) < sought:
+            low = middle
+        else:
+            high = middle
+    return math.exp(high)
+
+
+CONTACT_WITHOUT_TENSION = (_angle_over_sine, _ratio_of_a_contact_that_does_not_pull)
+"""Functions of plain Python whose source goes into scripts of other programs; they need ``math`` alone."""
+
+
+def typed(e: float, share: float = 1.0) -> float:
     """The e to type into a code that sets its damping by the overlap rule and cuts the tension, to have ``e``.
+
+    ``share`` is what the contact gets of the damping ratio that the code means to set: 1/sqrt(2) at walls of YADE.
 
     Raises
     ------
-    InputError : for e up to exp(-2) = 0.135, which no e typed there delivers.
+    InputError : for an e that no e typed there delivers: up to exp(-2) = 0.135, of the share 1/sqrt(2) 0.208.
     """
-    if not LEAST_TYPED < e <= 1:
-        rule = f"a code that cuts the tension delivers {LEAST_TYPED:.3f} < e <= 1"
+    least = restitution(share, End.FORCE)
+    if not least < e <= 1:
+        rule = f"a code that cuts the tension delivers {least:.3f} < e <= 1"
         raise InputError(Defect(rule, field="e", value=f"{e:g}"))
-    return restitution(damping_ratio(e, End.FORCE), End.OVERLAP)
+    return restitution(damping_ratio(e, End.FORCE) / share, End.OVERLAP)
 
 
 @dataclass(frozen=True)

@@ -271,7 +271,7 @@ _IMPACT = ("v", "d", "rho_p", "rho_f", "mu")
 def _stokes(closure: Closure) -> list[Function]:
     name, definition = f"{closure.name}_stokes", convention(closure.convention).definition
     expression = wall_stokes(closure.convention)
-    arguments = tuple(a for a in _IMPACT if a in {s.name for s in expression.free_symbols})
+    arguments = arguments_of_stokes(closure.convention)
     wall = Function(
         name,
         arguments,
@@ -292,6 +292,12 @@ def _stokes(closure: Closure) -> list[Function]:
         ),
     )
     return [wall, pair]
+
+
+def arguments_of_stokes(key: str) -> tuple[str, ...]:
+    """The names that a Stokes number is a function of, in the order of the functions' arguments."""
+    used = {s.name for s in wall_stokes(key).free_symbols}
+    return tuple(a for a in _IMPACT if a in used)
 
 
 @cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 
 from restitution import __version__
 from restitution.export.closure import Closure
@@ -10,6 +11,8 @@ from restitution.stokes import Speed, convention
 
 WIDTH = 108
 """Characters of a line, before the comment sign."""
+NOT_TRIED = "not tried: the program was not run with this text; let one sphere fall and see that e is as asked"
+"""Said of texts for programs that were not at hand."""
 _SPEEDS = {
     Speed.FAR: "of the motion outside the film, carried to the wall",
     Speed.CONTACT: "extrapolated to the instant of contact",
@@ -42,6 +45,14 @@ def heading(closure: Closure, target: str, version: str = "") -> list[str]:
         plain = " ".join(fact.split()).encode("ascii", "backslashreplace").decode()
         lines += textwrap.wrap(plain, WIDTH, subsequent_indent="    ", break_long_words=True)
     return [line.rstrip("\\ ") for line in lines]
+
+
+def comment_lines(closure: Closure, target: str, version: str, lines: Sequence[str], sign: str = "#") -> str:
+    """Heading and further lines as comments; indented lines are commands, kept whole."""
+    said = heading(closure, target, version)
+    for line in lines:
+        said += [line] if line.startswith(" ") else textwrap.wrap(line, WIDTH, subsequent_indent="    ")
+    return "".join(f"{sign} {line}\n" for line in said)
 
 
 def _impact(closure: Closure) -> tuple[str, ...]:

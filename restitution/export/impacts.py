@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.conditions import Conditions
+from restitution.conditions import Conditions, Sphere
 from restitution.errors import Defect, InputError
 from restitution.export.closure import Closure
 from restitution.stokes import convention
@@ -24,7 +24,7 @@ class Impacts:
     @property
     def per_speed(self) -> float:
         """The law's Stokes number over the impact speed, s/m."""
-        return float(convention(self.closure.convention).per_speed(self.conditions))
+        return stokes_per_speed(self.closure.convention, self.conditions)
 
     @property
     def mass(self) -> float:
@@ -40,6 +40,22 @@ class Impacts:
         """e_eff at Stokes numbers of the law."""
         arguments = (St, self.e_dry) if "e_dry" in self.closure.variables else (St,)
         return self.closure.value(*arguments)
+
+
+def stokes_per_speed(key: str, conditions: Conditions) -> float:
+    """St over the speed, s/m; of two spheres by reduced mass over reduced radius squared (lubrication)."""
+    if conditions.partner is None:
+        return float(convention(key).per_speed(conditions))
+    both = (conditions.sphere, conditions.partner)
+    d_1, d_2 = (sphere.diameter for sphere in both)
+    # Of each sphere at a wall; times d^2 it goes as the mass.
+    s_1, s_2 = (stokes_per_speed(key, at_a_wall(conditions, s)) * s.diameter**2 for s in both)
+    return s_1 * s_2 / (s_1 + s_2) * ((d_1 + d_2) / (d_1 * d_2)) ** 2
+
+
+def at_a_wall(conditions: Conditions, sphere: Sphere | None = None) -> Conditions:
+    """The same fluid, and one of the spheres at a wall."""
+    return conditions.model_copy(update={"sphere": sphere or conditions.sphere, "partner": None})
 
 
 def impacts_of(closure: Closure, conditions: Conditions | None, e_dry: float | None, target: str) -> Impacts:

@@ -10,7 +10,7 @@ from restitution import __version__
 from restitution.conditions import Conditions
 from restitution.export.closure import Closure
 from restitution.export.heading import heading
-from restitution.export.impacts import impacts_of
+from restitution.export.impacts import at_a_wall, impacts_of, stokes_per_speed
 from restitution.export.self_check import TOLERANCE, check_table
 from restitution.stokes import convention
 
@@ -30,7 +30,9 @@ def csv_table(
     speed = St / pair.per_speed
     columns = {"impact_speed_m_s": speed, "stokes": St, "e_eff": pair.restitution(St)}
     if closure.interval is not None:
-        ends = np.clip(closure.interval(speed, conditions), 0.0, 1.0)
+        wall = at_a_wall(conditions)
+        ends = closure.interval(St / stokes_per_speed(closure.convention, wall), wall)
+        ends = np.clip(ends, 0.0, 1.0)
         columns |= {"e_eff_low_95": ends[:, 0], "e_eff_high_95": ends[:, 1]}
     said = [*heading(closure, "CSV"), *pair_lines(pair.conditions), f"e_dry {pair.e_dry:g}"]
     said.append("beyond the first and the last row this table says nothing: hold their e_eff, and say so")

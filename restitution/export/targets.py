@@ -6,18 +6,15 @@ import difflib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.export.closure import Closure
-from restitution.export.dem import Request, lammps, lammps_drop_test, liggghts, yade
+from restitution.export.dem import Request, lammps, liggghts, yade
+from restitution.export.drops import PROGRAMS, Program
 from restitution.export.impacts import Impacts, impacts_of
 from restitution.export.languages import LANGUAGES, source_code
+from restitution.export.solvers import FILM_CODES, FilmRequest, film_code, mfix, openfoam, openlb
 from restitution.export.tables import csv_table, json_record
-
-_DROPS = 8
-"""Impact speeds of a drop test."""
 
 
 @dataclass(frozen=True)
@@ -26,20 +23,24 @@ class Options:
 
     derivative: bool = False
     bare: bool = False
-    drop_test: bool = False
     conditions: Conditions | None = None
     e_dry: float | None = None
     request: Request = field(default_factory=lambda: Request(0, None, 0.02, (20.0, 1000.0)))
+    film: FilmRequest = field(default_factory=FilmRequest)
 
 
 @dataclass(frozen=True)
 class Target:
-    """``takes``: which options it needs, in words. ``text`` makes the file's content."""
+    """``takes``: which options it needs, in words. ``text`` makes the file's content.
+
+    ``program``: where what it delivers can be measured.
+    """
 
     key: str
     title: str
     takes: str
     text: Callable[[Closure, Options], str]
+    program: Program | None = None
 
 
 def _language(key: str) -> Target:
@@ -52,17 +53,28 @@ def _language(key: str) -> Target:
     )
 
 
-def _dem(key: str, title: str, text: Callable[[Impacts, Request], str]) -> Target:
-    def make(closure: Closure, options: Options) -> str:
-        pair = impacts_of(closure, options.conditions, options.e_dry, key)
-        if not options.drop_test:
-            return text(pair, options.request)
-        if key != "lammps" or options.conditions.partner is not None:
-            raise InputError(Defect("is written for lammps and a wall only", field="--drop-test"))
-        speeds = np.geomspace(*options.request.stokes, _DROPS) / pair.per_speed
-        return lammps_drop_test(pair, options.request, speeds)
+def _impacts(key: str, title: str, takes: str, text: Callable[[Impacts, Request], str]) -> Target:
+    """A target that takes the impacts of one pair."""
 
-    return Target(key, title, "--fluid --sphere, --level 0 --speed V or --level 1 [--st-range]", make)
+    def make(closure: Closure, options: Options) -> str:
+        return text(impacts_of(closure, options.conditions, options.e_dry, key), options.request)
+
+    return Target(key, title, f"--fluid --sphere, {takes}", make, PROGRAMS.get(key))
+
+
+def _dem(key: str, title: str, text: Callable[[Impacts, Request], str]) -> Target:
+    return _impacts(key, title, "--level 0 --speed V or --level 1, 2 [--st-range] [--drop-test]", text)
+
+
+def _film(key: str) -> Target:
+    title = FILM_CODES[key][0]
+    takes = "a film law; --fluid --sphere --cells N, where the law takes them --speed V --modulus E"
+    return Target(
+        key,
+        title,
+        takes,
+        lambda closure, options: film_code(key, closure, options.conditions, options.e_dry, options.film),
+    )
 
 
 TARGETS: dict[str, Target] = {
@@ -81,30 +93,25 @@ TARGETS: dict[str, Target] = {
             "[--derivative]",
             lambda closure, options: json_record(closure, options.derivative),
         ),
-        _dem("lammps", "LAMMPS granular: constant e; level 1 without tension [--drop-test]", lammps),
-        _dem("liggghts", "LIGGGHTS, CFDEMcoupling: constant e; level 1 its viscous contact, refitted", liggghts),
-        _dem("yade", "YADE: constant e; level 1 its lubrication law, refitted", yade),
+        _dem("lammps", "LAMMPS granular: constant e; 1: no tension; 2: e(St), Python", lammps),
+        _dem(
+            "liggghts",
+            "LIGGGHTS, CFDEMcoupling: constant e; 1: viscous, refitted; 2: e(St), C++",
+            liggghts,
+        ),
+        _dem("yade", "YADE: constant e; 1: its lubrication law, refitted; 2: e(St), Python", yade),
+        _impacts("openfoam", "OpenFOAM parcels: rebound at walls", "--level 0 --speed V or --level 2", openfoam),
+        _impacts("mfix", "MFIX keys: constant e", "--level 0 --speed V", mfix),
+        _impacts("openlb", "OpenLB contacts: function of the speed at contact", "--level 2", openlb),
+        *map(_film, FILM_CODES),
     )
 }
-RESOLVE_THE_FILM = {
-    "walberla": "waLBerla",
-    "lethe": "Lethe",
-    "ludwig": "Ludwig",
-    "liggghts-pfm": "LIGGGHTS-PFM's hertz/lubricated",
-}
-"""Codes with a lubrication film of their own, which want e_dry."""
 
 
 def target(key: str) -> Target:
-    """The target of that name; raises :class:`InputError` naming the known ones, or why there is none."""
+    """The target of that name; raises :class:`InputError` naming the known ones."""
     if key in TARGETS:
         return TARGETS[key]
-    if key in RESOLVE_THE_FILM:
-        rule = (
-            f"{RESOLVE_THE_FILM[key]} has a lubrication film of its own: an e_eff beside it would count the "
-            "viscous loss twice. It takes e_dry and a least gap: 'restitution laws list --family film'"
-        )
-        raise InputError(Defect(rule, field="--to", value=key))
     near = difflib.get_close_matches(key, TARGETS, n=1)
     hint = f"did you mean {near[0]}? " if near else ""
     raise InputError(Defect(f"is no target; {hint}known: {', '.join(TARGETS)}", field="--to", value=key))

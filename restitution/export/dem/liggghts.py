@@ -1,25 +1,25 @@
 """LIGGGHTS PUBLIC, also in CFDEMcoupling: a constant e, or its Legendre-like hooke contact with refitted inputs.
 
 `viscous on` takes the Stokes number of the instantaneous speed, so Legendre's constants typed in do not give his
-law (:mod:`.viscous_contact`). Level 1 are the inputs with which it comes nearest to ours, and what it misses by.
+law (:mod:`.viscous_contact`). Level 1 are the inputs with which it comes nearest to ours, and what it misses by;
+level 2 is :mod:`.liggghts_law`.
 """
 
 from __future__ import annotations
 
 from restitution.errors import Defect, InputError
+from restitution.export.dem.liggghts_law import liggghts_law
 from restitution.export.dem.snippet import (
     STEPS_A_CONTACT,
     Request,
-    check_level,
     comments,
     constant_of,
     fastest,
     range_lines,
     stokes_points,
 )
-from restitution.export.dem.viscous_contact import delivered, refit, refit_points
-from restitution.export.impacts import Impacts
-from restitution.stokes import convention
+from restitution.export.dem.viscous_contact import Refit, delivered, refit, refit_points
+from restitution.export.impacts import Impacts, stokes_per_speed
 
 VERSION = "PUBLIC 3.8.0"
 LEAST = 0.05
@@ -27,8 +27,9 @@ LEAST = 0.05
 
 
 def liggghts(impacts: Impacts, request: Request) -> str:
-    """Commands for an input script in SI units."""
-    check_level(request, "liggghts", 1)
+    """Commands for an input script in SI units; of level 2 the C++ source of a normal model."""
+    if request.level == 2:
+        return liggghts_law(impacts, request, VERSION)
     return _constant(impacts, request) if request.level == 0 else _refitted(impacts, request)
 
 
@@ -49,11 +50,15 @@ def _constant(impacts: Impacts, request: Request) -> str:
     return text + "fix             film all wall/gran model hooke primitive type 1 zplane 0.0\n"
 
 
-def _refitted(impacts: Impacts, request: Request) -> str:
-    # The code's own Stokes number is st_b; the law may have another.
-    ratio = float(convention("st_b").per_speed(impacts.conditions)) / impacts.per_speed
+def refitted(impacts: Impacts, request: Request) -> tuple[Refit, float]:
+    """The inputs of `viscous on`, and the code's own Stokes number, st_b, over that of the law."""
+    ratio = stokes_per_speed("st_b", impacts.conditions) / impacts.per_speed
     points = refit_points(*request.stokes)
-    inputs = refit(points * ratio, impacts.restitution(points))
+    return refit(points * ratio, impacts.restitution(points)), ratio
+
+
+def _refitted(impacts: Impacts, request: Request) -> str:
+    inputs, ratio = refitted(impacts, request)
     low, high = request.stokes
     shown = stokes_points(request)
     asked, given = impacts.restitution(shown), delivered(shown * ratio, inputs.critical, inputs.most)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
 from dataclasses import dataclass
 
 import numpy as np
 
 from restitution.errors import Defect, InputError
 from restitution.export.dem.constant import Constant, best_constant, constant_at
-from restitution.export.heading import WIDTH, heading
+from restitution.export.heading import comment_lines
 from restitution.export.impacts import Impacts
 from restitution.export.tables import pair_lines
 
@@ -38,10 +37,11 @@ def constant_of(impacts: Impacts, request: Request) -> Constant:
     return constant_at(impacts, request.speed, request.within)
 
 
-def check_level(request: Request, target: str, most: int) -> None:
+def check_level(request: Request, target: str, levels: tuple[int, ...]) -> None:
     """Refuse a level that a target has not."""
-    if not 0 <= request.level <= most:
-        raise InputError(Defect(f"{target} has levels 0 to {most}", field="--level", value=str(request.level)))
+    if request.level not in levels:
+        known = " and ".join(map(str, levels))
+        raise InputError(Defect(f"{target} has level {known}", field="--level", value=str(request.level)))
 
 
 def fastest(impacts: Impacts, request: Request) -> float:
@@ -70,13 +70,10 @@ def range_lines(impacts: Impacts, constant: Constant) -> list[str]:
     return lines
 
 
-def comments(impacts: Impacts, target: str, version: str, lines: list[str]) -> str:
-    """The heading of a text, and what is to be said of this target."""
-    said = [*heading(impacts.closure, target, version), *pair_lines(impacts.conditions)]
-    said.append(f"e_dry {impacts.e_dry:g}")
-    for line in lines:
-        said += textwrap.wrap(line, WIDTH, subsequent_indent="    ")
-    return "".join(f"# {line}\n" for line in said)
+def comments(impacts: Impacts, target: str, version: str, lines: list[str], sign: str = "#") -> str:
+    """The heading of a text, and what is to be said of this target; indented lines are commands, kept whole."""
+    pair = [*pair_lines(impacts.conditions), f"e_dry {impacts.e_dry:g}"]
+    return comment_lines(impacts.closure, target, version, [*pair, *lines], sign)
 
 
 def stokes_points(request: Request, n: int = 9) -> np.ndarray:

@@ -1,25 +1,30 @@
 """YADE: a constant e, or its own lubrication law of the impact with refitted inputs.
 
-Its ViscEl contact does not pull, so a constant e is typed as the inverse of what that makes of it. With
+Its ViscEl contact does not pull, so a constant e is typed as the inverse of what that makes of it. At a wall, a
+facet or a fixed sphere it takes half the sphere's mass, so that the damping ratio is 1/sqrt(2) of the one meant:
+with 0.7 typed it was measured to deliver 0.718 between two spheres and 0.788 at a wall. With
 `lubrication=True` the contact takes, at its first step,
 
     e = en [1 - ln(d/(2 roughness))/St_d],   St_d = rho_p v d/mu, without the 9,
 
 so en and `roughnessScale` are fitted to the law over a range; being linear in 1/St it misses a law that is
 exponential in it by much where St is small. Where `tc` and `en` are given `lubrication` is silently ignored.
+Level 2 is :mod:`.yade_law`.
 """
 
 from __future__ import annotations
+
+import math
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from restitution.export.dashpot import End, dashpot, typed
+from restitution.export.dashpot import End, damping_ratio, dashpot, restitution, typed
 from restitution.export.dem.snippet import (
     STEPS_A_CONTACT,
     Request,
-    check_level,
     comments,
     constant_of,
     fastest,
@@ -27,23 +32,30 @@ from restitution.export.dem.snippet import (
     stiffness_for,
     stokes_points,
 )
+from restitution.export.dem.yade_law import yade_law
 from restitution.export.impacts import Impacts
-from restitution.stokes import convention
 
-VERSION = "2023.02a; this text was not run"
+VERSION = "2023.02a"
+SHARE_AT_A_WALL = 1 / math.sqrt(2)
+"""Of the damping ratio that is meant, at a body that does not move."""
+YOUNG = 5e7
+"""Pa, of level 1: the user's to change."""
 OWN_LAW = 0.01
-"""By how much the program's e was measured to differ from its own law: 0.008 at most."""
+"""By how much the program's e was measured to differ from what is said of it: 0.008 at most."""
+_RATIOS = np.geomspace(1e-6, 1e4, 4000)
+"""Damping ratios that what becomes of e at a wall is tabulated at."""
 
 
 def yade(impacts: Impacts, request: Request) -> str:
     """Lines for a script in SI units."""
-    check_level(request, "yade", 1)
+    if request.level == 2:
+        return yade_law(impacts, request, VERSION)
     return _constant(impacts, request) if request.level == 0 else _refitted(impacts, request)
 
 
 def _constant(impacts: Impacts, request: Request) -> str:
     constant = constant_of(impacts, request)
-    e = typed(constant.e)
+    e = typed(constant.e, share(impacts))
     contact = dashpot(
         constant.e, impacts.mass, stiffness=stiffness_for(impacts, fastest(impacts, request)), end=End.FORCE
     )
@@ -51,6 +63,7 @@ def _constant(impacts: Impacts, request: Request) -> str:
         *range_lines(impacts, constant),
         f"the contact does not pull: en = {e:.6g} is typed to have {constant.e:.6g} delivered "
         "(Schwager & Poeschel 2007)",
+        *_at_a_wall(impacts, e),
         f"tc for an overlap of 1 % of d at {request.speed:.4g} m/s; e does not depend on it; time step at most "
         f"tc/{STEPS_A_CONTACT}",
         "no lubrication=True beside it: the program ignores it here, and e_eff holds the viscous loss already",
@@ -60,13 +73,55 @@ def _constant(impacts: Impacts, request: Request) -> str:
     return text + _engines(impacts, material)
 
 
-def law_of_yade(St_d: NDArray, en: float, loss: float) -> NDArray:
-    """en (1 - loss/St_d), not below 0; ``loss`` = ln(d/(2 roughness))."""
-    return np.maximum(en * (1 - loss / np.asarray(St_d)), 0.0)
+def share(impacts: Impacts) -> float:
+    """Of the damping ratio that is meant, what the contact gets."""
+    return SHARE_AT_A_WALL if impacts.conditions.partner is None else 1.0
 
 
-def _refitted(impacts: Impacts, request: Request) -> str:
-    ratio = float(convention("st_d").per_speed(impacts.conditions)) / impacts.per_speed
+def _at_a_wall(impacts: Impacts, e: float) -> list[str]:
+    if impacts.conditions.partner is not None:
+        return [
+            "for two spheres; at a wall, facet or fixed sphere this material delivers another e: --sphere alone"
+        ]
+    two = restitution(damping_ratio(e), End.FORCE)
+    return [
+        "for walls, facets and fixed spheres, where the program takes half the mass: two free spheres of this "
+        f"material deliver {two:.4f}; export theirs with a partner in --conditions, as a material of its own"
+    ]
+
+
+def law_of_yade(St_d: NDArray, en: float, loss: float, part: float = 1.0) -> NDArray:
+    """en (1 - loss/St_d), not below 0, and what is delivered of it with a ``part`` of the damping ratio.
+
+    ``loss`` = ln(d/(2 roughness)).
+    """
+    e = np.maximum(en * (1 - loss / np.asarray(St_d)), 0.0)
+    if part == 1:
+        return e
+    return np.interp(e, *_part_given(part))
+
+
+@cache
+def _part_given(part: float) -> tuple[NDArray, NDArray]:
+    """e meant and e delivered with a part of its damping ratio, both rising."""
+    meant, given = (np.array([restitution(z, End.FORCE) for z in scale * _RATIOS]) for scale in (1.0, part))
+    return meant[::-1], given[::-1]
+
+
+def _diameter(impacts: Impacts) -> float:
+    """The one that the program's law takes: the mean of the two, which was measured for spheres of one density."""
+    sphere, partner = impacts.conditions.sphere, impacts.conditions.partner
+    return sphere.diameter if partner is None else (sphere.diameter + partner.diameter) / 2
+
+
+def own_stokes_per_speed(impacts: Impacts) -> float:
+    """The program's rho_p v d/mu over v, s/m: of two spheres not by reduced mass and radius."""
+    return impacts.conditions.sphere.density * _diameter(impacts) / impacts.conditions.fluid.viscosity
+
+
+def refitted(impacts: Impacts, request: Request) -> tuple[float, float, float, float]:
+    """en and loss of the code's law, the deviation that remains, and its Stokes number over that of ours."""
+    ratio = own_stokes_per_speed(impacts) / impacts.per_speed
     St = np.geomspace(*request.stokes, 200)
     e = impacts.restitution(St)
 
@@ -74,21 +129,28 @@ def _refitted(impacts: Impacts, request: Request) -> str:
         return float(np.clip(p[0], 0.01, 1.0)), float(abs(p[1]))
 
     def worst(p: NDArray) -> float:
-        return float(np.abs(law_of_yade(St * ratio, *inputs(p)) - e).max())
+        return float(np.abs(law_of_yade(St * ratio, *inputs(p), share(impacts)) - e).max())
 
     start = [float(e.max()), 0.5 * request.stokes[0] * ratio]
     best = minimize(worst, start, method="Nelder-Mead", options={"xatol": 1e-6, "fatol": 1e-8, "maxiter": 2000})
-    en, loss = inputs(best.x)
-    roughness = impacts.conditions.sphere.diameter / 2 * float(np.exp(-loss))
+    return *inputs(best.x), worst(best.x), ratio
+
+
+def _refitted(impacts: Impacts, request: Request) -> str:
+    en, loss, deviation, ratio = refitted(impacts, request)
+    roughness = _diameter(impacts) / 2 * float(np.exp(-loss))
     shown = stokes_points(request)
     low, high = request.stokes
     said = [
-        f"e by the program's law is within {worst(best.x):.3f} of ours for {low:g} <= St <= {high:g} "
+        f"e by the program's law is within {deviation:.3f} of ours for {low:g} <= St <= {high:g} "
         f"({impacts.closure.convention}); the program was measured within {OWN_LAW:g} of its law",
         *(
             f"St {x:8.4g}: asked {a:.3f}, its law {g:.3f}"
             for x, a, g in zip(
-                shown, impacts.restitution(shown), law_of_yade(shown * ratio, en, loss), strict=True
+                shown,
+                impacts.restitution(shown),
+                law_of_yade(shown * ratio, en, loss, share(impacts)),
+                strict=True,
             )
         ),
         "en and roughnessScale are fitted inputs: neither the dry restitution nor a height of asperities",
@@ -96,8 +158,8 @@ def _refitted(impacts: Impacts, request: Request) -> str:
     ]
     mu = impacts.conditions.fluid.viscosity
     material = (
-        f"en={en:.9g}, et=1.0, young=5e7, poisson=0.3, frictionAngle=0.0, lubrication=True, viscoDyn={mu:.6g}, "
-        f"roughnessScale={roughness:.6g}"
+        f"en={en:.9g}, et=1.0, young={YOUNG:g}, poisson=0.3, frictionAngle=0.0, lubrication=True, "
+        f"viscoDyn={mu:.6g}, roughnessScale={roughness:.6g}"
     )
     return comments(impacts, "YADE", VERSION, said) + _engines(impacts, material)
 

@@ -21,9 +21,11 @@ def _expression(expression: Any) -> str:
 
 def _file(language: Language, source: Source) -> str:
     name, upper, table = source.name, source.name.upper(), source.table
-    text = language.comments(source.heading)
-    text += f"{language.comment} Self-check: cc -std=c99 -D{upper}_MAIN -x c {name}.h -lm && ./a.out\n"
-    text += f"\n#ifndef {upper}_H\n#define {upper}_H\n\n#include <math.h>\n"
+    text = "#include <math.h>\n"
+    if not source.part:
+        check = f"{language.comment} Self-check: cc -std=c99 -D{upper}_MAIN -x c {name}.h -lm && ./a.out\n"
+        guard = f"\n#ifndef {upper}_H\n#define {upper}_H\n\n"
+        text = language.comments(source.heading) + check + guard + text
     for f in source.functions:
         kind, arguments = ("int" if f.flag else "double"), ", ".join(f"double {a}" for a in f.arguments)
         text += f"\n/* {f.says} */\nstatic inline {kind} {f.name}({arguments})\n{{\n{language.body(f)}}}\n"
@@ -43,6 +45,8 @@ def _file(language: Language, source: Source) -> str:
             f"        if (!(fabs({function}({call}) - {what}[i]) <= {TOLERANCE!r} * fabs({what}[i]))) wrong++;\n"
         )
     text += "    }\n    return wrong;\n}\n"
+    if source.part:
+        return text
     text += (
         f"\n#ifdef {upper}_MAIN\n#include <stdio.h>\nint main(void)\n{{\n    int wrong = {name}_self_check();\n"
     )

@@ -23,6 +23,8 @@ class Source:
     functions: Sequence[Function]
     table: CheckTable
     derivative: bool
+    part: bool = False
+    """Whether the text is to stand in a longer file: no heading, no program of its own."""
 
 
 def one_line(printed: str) -> str:

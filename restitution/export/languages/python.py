@@ -50,7 +50,8 @@ def _expression(expression: Any) -> str:
 def _file(language: Language, source: Source) -> str:
     name, table = source.name, source.table
     checked = [(name, "values")] + [(f"{name}_slope", "slopes")] * source.derivative
-    text = language.comments(source.heading) + f"# Self-check: python3 {name}.py\n\nimport math\n{_HELPERS}"
+    text = "" if source.part else language.comments(source.heading) + f"# Self-check: python3 {name}.py\n\n"
+    text += f"import math\n{_HELPERS}"
     for f in source.functions:
         text += f'\n\ndef {f.name}({", ".join(f.arguments)}):\n    """{f.says}."""\n{language.body(f)}'
     rows = "".join(f"    {row},\n" for row in language.rows(table, "(", ",)", ", "))
@@ -63,7 +64,10 @@ def _file(language: Language, source: Source) -> str:
     for function, what in checked:
         text += f"    for given, expected in zip(_INPUTS, _{what.upper()}):\n"
         text += f"        wrong += not abs({function}(*given) - expected) <= {TOLERANCE!r} * abs(expected)\n"
-    text += '    return wrong\n\n\nif __name__ == "__main__":\n    wrong = self_check()\n'
+    text += "    return wrong\n"
+    if source.part:
+        return text
+    text += '\n\nif __name__ == "__main__":\n    wrong = self_check()\n'
     return text + f'    print("{name}:", wrong, "wrong")\n    raise SystemExit(wrong != 0)\n'
 
 

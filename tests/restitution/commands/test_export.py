@@ -66,6 +66,14 @@ def test_existing_output_is_kept_unless_forced(command, tmp_path):
     assert "eq4_exponential" in (tmp_path / "law.h").read_text()
 
 
+def test_a_drop_test_without_the_program_is_its_input(command, monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    status, out, error = command("eq4_exponential", "--to", "yade", *FLUID, *SPHERE, "--level", "2", "--drop-test")
+    assert (status, error.count("\n")) == (0, 1)
+    assert "not installed" in error
+    compile(out, "drop.py", "exec")
+
+
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
@@ -82,9 +90,9 @@ def test_existing_output_is_kept_unless_forced(command, tmp_path):
         (["eq4_exponential", "--to", "csv", *FLUID, "--sphere", "diameter=0.003,density=7800"], "e_dry"),
         (["eq4_exponential", "--to", "lammps", *FLUID, *SPHERE], "--speed"),
         (["eq4_exponential", "--to", "lammps", *FLUID, *SPHERE, "--speed", "-1"], "--speed"),
-        (["eq4_exponential", "--to", "lammps", *FLUID, *SPHERE, "--speed", "0.3", "--level", "2"], "--level"),
+        (["bertin_2024", "--to", "yade", *FLUID, *SPHERE, "--level", "2"], "--to csv"),
         (["eq4_exponential", "--to", "liggghts", *FLUID, *SPHERE, "--speed", "0.04"], "0.05 < e"),
-        (["eq4_exponential", "--to", "liggghts", *FLUID, *SPHERE, "--drop-test"], "--drop-test"),
+        (["eq4_exponential", "--to", "c", *FLUID, *SPHERE, "--drop-test"], "--drop-test"),
         (["eq4_exponential", "--to", "walberla"], "twice"),
         (["taylor_1925", "--to", "yade", *FLUID, *SPHERE, "--speed", "0.3"], "twice"),
         (["eq4_exponential", "--to", "c", "--out", "missing/law.h"], "missing"),

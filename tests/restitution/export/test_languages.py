@@ -128,6 +128,7 @@ def given_by(closure: Closure, key: str, rows: np.ndarray, folder) -> np.ndarray
     return np.array([[float(x) for x in line.split()] for line in printed.splitlines()])
 
 
+@pytest.mark.targets
 @pytest.mark.parametrize("key", LANGUAGES)
 @pytest.mark.parametrize("name", ["eq4_exponential", "two_way_lubrication", *OTHERS[:3]])
 def test_agrees_on_a_thousand_points(name, key, tmp_path, monkeypatch):
@@ -156,6 +157,7 @@ def check_itself(closure: Closure, key: str, folder, edit=lambda text: text) -> 
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.targets
 @pytest.mark.parametrize("key", ["c", "fortran", "python", "javascript", "octave", "julia"])
 def test_self_check_passes_and_finds_an_edited_constant(key, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -174,6 +176,7 @@ def test_every_law_with_a_formula_checks_itself_in_python(name, tmp_path, monkey
     assert max(map(len, statements)) <= 132  # the standard's longest
 
 
+@pytest.mark.targets
 def test_header_serves_c_plus_plus(tmp_path, monkeypatch):
     if shutil.which("g++") is None:
         pytest.skip("g++ is not installed: C++ was not tried")
