@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 
-from restitution.bounce import terminal_speed
-from restitution.bounce.closures import excess_weight
 from restitution.bounce.forces import GREATEST_RE, expected_reynolds
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
+from restitution.laws.drag import excess_weight, terminal_speed
 from restitution.stokes import StokesNumber
 from restitution.tracks import DETECTION, Contacts, Track
 

@@ -254,9 +254,3 @@ def test_the_table_obeys_the_impact_schema(tmp_path):
     assert check_table(path, datasets.schema("impact")) == []
 
 
-def test_a_sphere_without_dry_restitution_is_refused():
-    bare = Conditions.model_validate(
-        {"fluid": {"density": 935, "viscosity": 0.01}, "sphere": {"diameter": 3e-3, "density": 7800}}
-    )
-    with pytest.raises(InputError, match="e_dry"):
-        find_impacts(datasets.load_track("gondret2002_st152"), bare)
