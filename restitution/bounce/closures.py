@@ -63,11 +63,20 @@ class Closures:
     reduced_modulus: float | None = None
     """E* of the two bodies in Pa: the contact gap is then at least the elastohydrodynamic one (Yang & Hunt 2008)
     at the speed with which the sphere enters the film."""
-    film: float = H_FILM
-    """Edge of the film in diameters. A law's constants belong to it: the wider the film, the more of the loss is
-    in e_eff. The same frames want K of Eq. (4) to be 8.4, 10.9 and 14.5 at 0.05, 0.1 and 0.2 d."""
+    film: float | None = None
+    """Edge of the film in diameters, by default that of the law, else 0.1. A law's constants belong to it: the
+    wider the film, the more of the loss is in e_eff (``python -m benchmarks.film_edges``)."""
 
     def __post_init__(self) -> None:
+        own = getattr(self.rebound, "edge", None)
+        if self.film is None:
+            object.__setattr__(self, "film", H_FILM if own is None else own)
+        elif own is not None and own != self.film:
+            rule = (
+                f"is not the edge of the film that {self.rebound.name} belongs to, {own:g} d: leave it out, or "
+                "convert the law by restitution.bounce.law_at"
+            )
+            raise InputError(Defect(rule, field="film", value=f"{self.film:g}"))
         if self.lubrication is None:
             object.__setattr__(self, "lubrication", not self.black_box)
         if self.rebound is not None and self.measured is not None:

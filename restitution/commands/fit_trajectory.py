@@ -42,6 +42,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
     from restitution.laws.source_abstract_eq4 import READINGS
+    from restitution.stokes import H_FILM
 
     if args.speed not in (None, "far"):
         rule = "a whole trajectory gives the speed of the motion outside the film: far"
@@ -55,7 +56,9 @@ def run(args: argparse.Namespace) -> None:
         law: fit_options.plan_of(args, law, args.law_stokes or how.stokes or "st", strict=args.law is not None)
         for law in ((args.law,) if args.law else READINGS)
     }
-    measured = Measured.of(read_recordings(args.data, how), wakes)
+    edge = H_FILM if how.edge is None else how.edge
+    measured = Measured.of(read_recordings(args.data, how), wakes, edge)
+    show(f"within {edge:g} d of the wall e_eff stands for every viscous force; its law's constants belong to that")
     _show_records(measured)
     best = args.law
     if best is None:

@@ -89,6 +89,7 @@ def find_impacts(
         track, conditions, Speed(speed), window_frames, h_film * conditions.sphere.diameter, level
     )
     rows, notes = [], _remarks(track, found)
+    edge = h_film if Speed(speed) is Speed.FAR else None
     for i, contact in enumerate(_with_quoted_first(track, conditions, found, notes)):
         try:
             speeds = measure(contact, np.random.default_rng([seed, i]))
@@ -98,7 +99,9 @@ def find_impacts(
             when = f"{t:.4g}" if abs(t) < 100 else f"{t:.4f}"  # a computer's clock needs all its digits
             notes.append(f"impact {i + 1}, near t = {when} s: {reason}")
             continue
-        rows.append({"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, stokes))
+        rows.append(
+            {"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, edge, stokes)
+        )
     return Impacts(rows, track.sigma, notes, [*clean.doubts, *of_track(track, found, conditions, record)])
 
 
@@ -122,13 +125,14 @@ def _with_quoted_first(track: Track, conditions: Conditions, found: Contacts, no
     return found.contacts
 
 
-def _row(found: Speeds, conditions: Conditions, speed: Speed | str, stokes: str) -> dict:
+def _row(found: Speeds, conditions: Conditions, speed: Speed | str, edge: float | None, stokes: str) -> dict:
     per_speed = convention(stokes).per_speed(conditions)
     v_in, v_in_sigma = _summary(found.v_in)
     row = {
         "outcome": "rebound" if found.v_out is not None else "not_resolved",
         "time_s": _summary(found.time_s)[0],
         "speed_definition": str(Speed(speed)),
+        "film_edge_d": edge,
         "impact_speed_m_s": v_in,
         "impact_speed_sigma_m_s": v_in_sigma,
         "stokes_convention": stokes,
