@@ -1,15 +1,16 @@
-"""Do the intervals of ``restitution impacts`` hold what they promise? Coverage on synthetic tracks with known truth.
+"""Do the intervals of ``restitution impacts`` hold what they promise? Coverage on synthetic tracks with
+known truth.
 
 A 6 mm glass sphere falls in a liquid of 6.2 mPa s from 15 to 40 mm, rebounds twice or three times with e from 0.45
-to 0.85, and is filmed: gravity, added mass and quadratic drag, in every other track also a wake that brakes the sphere
-after its rebound by up to v_in/sqrt(d/g) and dies out in 4 to 20 ms, integrated independently of this package. Kinds
-differ in frames a second and in what the frames suffer from; noise is 0.03 mm unless the kind says otherwise.
-Printed are, for every rebound that ``impacts`` resolves with the default definition of speed, the per cent of 68 %
-intervals of the impact speed and of e_eff that contain the truth, the rebounds resolved of those that there were, and
-the median errors.
+to 0.85, and is filmed: gravity, added mass and quadratic drag, in every other track also a wake that brakes
+the sphere after its rebound by up to v_in/sqrt(d/g) and dies out in 4 to 20 ms, integrated independently of
+this package. Kinds differ in frames a second and in what the frames suffer from; noise is 0.03 mm unless the
+kind says otherwise. Printed are, for every rebound that ``impacts`` resolves with the default definition of
+speed, the per cent of 68 % intervals of the impact speed and of e_eff that contain the truth, the rebounds
+resolved of those that there were, and the median errors.
 
-Each track has its own stream of random numbers. What was measured is kept in ``benchmarks/coverage_impacts.json`` as
-sums, and a run adds the tracks that are missing there.
+Each track has its own stream of random numbers. What was measured is kept in
+``benchmarks/coverage_impacts.json`` as sums, and a run adds the tracks that are missing there.
 
     python -m benchmarks.coverage_impacts [--tracks 300] [--only TEXT] [--processes 1]
 """
@@ -110,7 +111,9 @@ def draw(kind: Kind, seed: int) -> tuple[Track, list[tuple[float, float, float]]
 
 
 def one(task: tuple[Kind, int]) -> tuple[bool, int, int, list[list[float]]]:
-    """Whether with a wake, rebounds that there were, rows that belong to none, errors and sigmas of each resolved."""
+    """Whether with a wake, rebounds that there were, rows that belong to none, errors and sigmas of each
+    resolved.
+    """
     kind, seed = task
     track, truths = draw(kind, seed)
     found, invented = [], 0
@@ -166,12 +169,16 @@ class Cell:
         """One line of the table."""
         n = max(self.resolved, 1)
         v, e = (100 * x / n for x in (self.held_v, self.held_e))
-        apart = (self.held_e - self.held_e_wake) / max(n - self.resolved_wake, 1), self.held_e_wake / max(self.resolved_wake, 1)
+        apart = (
+            (self.held_e - self.held_e_wake) / max(n - self.resolved_wake, 1),
+            self.held_e_wake / max(self.resolved_wake, 1),
+        )
         sigma_v, sigma_e = np.exp(self.log_sigma_v / n), np.exp(self.log_sigma_e / n)
         return (
             f"| {self.kind} | {self.tracks} | {self.resolved} of {self.rebounds} | {v:.1f} | {e:.1f} | "
             f"{100 * apart[0]:.0f} / {100 * apart[1]:.0f} | "
-            f"{self.pull_v / n:+.2f} | {self.pull_e / n:+.2f} | {1e3 * sigma_v:.1f} | {sigma_e:.3f} | {self.invented} |"
+            f"{self.pull_v / n:+.2f} | {self.pull_e / n:+.2f} | {1e3 * sigma_v:.1f} | {sigma_e:.3f} | "
+            f"{self.invented} |"
         )
 
 
@@ -183,7 +190,10 @@ def main() -> None:
     args = parser.parse_args()
     rows = json.loads(OUT.read_text()) if OUT.exists() else []
     cells = {row["kind"]: Cell(**row) for row in rows}
-    print("| kind | tracks | resolved | v_in | e_eff | no wake / wake | bias v | bias e | sigma v, mm/s | sigma e | invented |")
+    print(
+        "| kind | tracks | resolved | v_in | e_eff | no wake / wake | bias v | bias e | sigma v, mm/s | "
+        "sigma e | invented |"
+    )
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     with Pool(args.processes) as pool:
         for kind in KINDS:

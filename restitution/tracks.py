@@ -100,8 +100,16 @@ def noise(time: NDArray, value: NDArray) -> float:
     sigma = np.median(np.abs((weight * y).sum(axis=1))) / 0.6745
     span = np.ptp(value)
     levels = np.unique(np.round(value / span, 9)) * span if span > 0 else np.zeros(1)
-    grid = np.min(np.diff(levels), initial=np.inf) / np.sqrt(12) if len(levels) > 1 else 0.0
-    return float(max(sigma, grid, 1e-6 * span))  # noise-free records keep a finite weight
+    return float(max(sigma, _grid(levels) / np.sqrt(12), 1e-6 * span))  # noise-free records keep a finite weight
+
+
+def _grid(levels: NDArray) -> float:
+    """The step of which all distances between ``levels`` are multiples; 0 where there is none."""
+    steps = np.diff(levels)
+    if not len(steps):
+        return 0.0
+    multiples = steps / steps.min()
+    return float(steps.min()) if np.all(np.abs(multiples - np.rint(multiples)) < 0.01) else 0.0
 
 
 def contacts(track: Track) -> Contacts:
@@ -120,11 +128,13 @@ def contacts(track: Track) -> Contacts:
     return Contacts(found, level, hovering)
 
 
-def _minima(track: Track, rest: int, level: float | None) -> tuple[list[tuple[int, int | None, int]], tuple[int, ...]]:
+def _minima(
+    track: Track, rest: int, level: float | None
+) -> tuple[list[tuple[int, int | None, int]], tuple[int, ...]]:
     """Contacts of a gap track: end of the approach, nearest frame, begin of the rebound; and minima in mid-air.
 
-    The sphere meets the wall where the frames beside it lie at most a frame's way above it. A minimum that is higher
-    than this, and nearer to the top of the lower of its flights than to the wall, is no contact.
+    The sphere meets the wall where the frames beside it lie at most a frame's way above it. A minimum that
+    is higher than this, and nearer to the top of the lower of its flights than to the wall, is no contact.
     """
     value, limit = track.value, DETECTION * track.sigma
     lows = [i for i in _lowest_frames(track, limit) if i < rest]
@@ -144,7 +154,8 @@ def _minima(track: Track, rest: int, level: float | None) -> tuple[list[tuple[in
 
 
 def _lowest_frames(track: Track, limit: float) -> list[int]:
-    """The lowest frame of every minimum deeper than ``limit``, found in means of so many frames that few make a top.
+    """The lowest frame of every minimum deeper than ``limit``, found in means of so many frames that few
+    make a top.
 
     Of very many frames about the top of a flight some differ by more than the limit by noise alone.
     """
@@ -198,7 +209,8 @@ def lowest_points(value: NDArray, depth: float) -> list[int]:
 
 
 def _reversals(track: Track) -> list[tuple[int, int | None, int]]:
-    """Contacts of a velocity track: from towards the wall to away from it, beyond noise, faster than gravity turns.
+    """Contacts of a velocity track: from towards the wall to away from it, beyond noise, faster than gravity
+    turns.
 
     A frame between the two has seen both sides of the contact and belongs to neither. Where the velocity grows on
     after it has turned, the contact lasts: nothing but the wall pushes the sphere away, so all frames about the
@@ -231,11 +243,13 @@ _STEEP = 8.0
 """Times the typical acceleration of a record from which on the wall pushes: a wake brakes by three."""
 
 
-def begins_on_rebound(track: Track, end: int | None = None) -> bool:
-    """Whether the record begins on a rebound: it rises from its first frame on, up to ``end``, and fastest at first.
+def begins_on_rebound(track: Track, found: Contacts) -> bool:
+    """Whether the record begins on a rebound: up to its first contact it rises from the first frame on,
+    fastest at first.
 
     A sphere that is held or lifted before its release does not; nor does noise about the release.
     """
+    end = found.contacts[0].approach.stop if found.contacts else len(track.time_s)
     flight, limit = track.value[:end], DETECTION * track.sigma
     if len(flight) < 3:
         return False

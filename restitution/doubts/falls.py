@@ -4,8 +4,9 @@ A rebound rises, stops and falls back: about its apex, where drag vanishes, it a
 
     g_eff = g (rho_p - rho_f)/(rho_p + rho_f/2),
 
-whatever the viscosity is. An approach does so as long as it is slow. A time axis that is wrong by a factor f changes
-the acceleration by 1/f^2, a wrong unit of length by its own factor: both show here at once, before any law of drag.
+whatever the viscosity is. An approach does so as long as it is slow. A time axis that is wrong by a factor f
+changes the acceleration by 1/f^2, a wrong unit of length by its own factor: both show here at once, before
+any law of drag.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ _PIECES = 8
 
 @dataclass(frozen=True)
 class Fall:
-    """An acceleration towards the wall in m/s2, its error, and the mean and the greatest speed meanwhile in m/s."""
+    """An acceleration towards the wall in m/s2, its error, and the mean and the greatest speed meanwhile in
+    m/s.
+    """
 
     acceleration: float
     error: float
@@ -81,7 +84,11 @@ def approach(track: Track, contacts: Contacts) -> Fall | None:
     if len(t) < _LEAST:
         return None
     begin = int(np.argmax(y)) if track.quantity == "gap" else 0
-    return _fall(t[begin:], y[begin:], track, 2 if track.quantity == "gap" else 1) if len(t) - begin >= _LEAST else None
+    return (
+        _fall(t[begin:], y[begin:], track, 2 if track.quantity == "gap" else 1)
+        if len(t) - begin >= _LEAST
+        else None
+    )
 
 
 def _fall(t: NDArray, y: NDArray, track: Track, order: int) -> Fall:
@@ -99,7 +106,9 @@ def _fall(t: NDArray, y: NDArray, track: Track, order: int) -> Fall:
 
 
 def fastest(track: Track, contacts: Contacts) -> float:
-    """The greatest speed in m/s that the noise does not explain: of a piece of a flight, less three of its errors."""
+    """The greatest speed in m/s that the noise does not explain: of a piece of a flight, less three of its
+    errors.
+    """
     found = [0.0]
     for flight in flights(track, contacts):
         t, y = track.time_s[flight.start : flight.stop], track.value[flight.start : flight.stop]

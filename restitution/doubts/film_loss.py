@@ -3,8 +3,8 @@
     e_eff = e_dry exp[-K (1 + e_dry)/St]    gives    K = St ln(e_dry/e_eff)/(1 + e_dry)    impact by impact,
 
 and the measured records of spheres of steel, glass and nylon under liquids have K of 8 to 18, by their reading
-(:mod:`restitution.laws.source_abstract_eq4`: 10 to 12; Legendre et al. 2005: 35/(1 + e_dry)). Another definition of
-the Stokes number than the stated one moves K by its factor.
+(:mod:`restitution.laws.source_abstract_eq4`: 10 to 12; Legendre et al. 2005: 35/(1 + e_dry)). Another
+definition of the Stokes number than the stated one moves K by its factor.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ _NEAR = 1.6
 
 
 def of_impacts(St: ArrayLike, e: ArrayLike, e_dry: ArrayLike, where: Sequence[str] = ()) -> list[Doubt]:
-    """Doubts about impacts; ``St`` under the convention ``st``, NaN in ``e`` or ``e_dry`` where it is not known."""
+    """Doubts about impacts; ``St`` under the convention ``st``, NaN in ``e`` or ``e_dry`` where it is not
+    known.
+    """
     St, e, e_dry = (np.asarray(x, float) for x in np.broadcast_arrays(St, e, e_dry))
     with np.errstate(all="ignore"):
         ratio = e / e_dry

@@ -1,7 +1,7 @@
 """Frames that no flight passes through: the tracking program had lost the sphere and followed something else.
 
-A sphere moves no farther between two frames than its speed allows, and a flight is smooth, so a frame is mistracked if
-the frames before it and those after it both say that the sphere was elsewhere:
+A sphere moves no farther between two frames than its speed allows, and a flight is smooth, so a frame is
+mistracked if the frames before it and those after it both say that the sphere was elsewhere:
 
 - anywhere: by more than the sphere goes in two frames at its fastest (a contact bends a track by less);
 - far from the wall, where no contact can be between: by more than eight times its error.
@@ -116,7 +116,8 @@ def _said(time: NDArray, value: NDArray, sigma: float) -> NDArray:
         t = time[windows] - time[at][:, None]
         scale = np.abs(t).max(axis=1, keepdims=True)
         design = (t / scale)[:, :, None] ** np.arange(order + 1)
-        weights = np.linalg.pinv(design)[:, 0, :]  # of the value at the frame itself
+        normal = np.linalg.inv(np.einsum("wij,wik->wjk", design, design))
+        weights = np.einsum("wj,wij->wi", normal[:, 0], design)  # of the value at the frame itself
         away = np.abs(np.einsum("wi,wi->w", weights, value[windows]) - value[at])
         error = _ERRORS * sigma * np.sqrt(1 + np.sum(weights**2, axis=1))
         better = away - error < said[at, 0] - said[at, 1]

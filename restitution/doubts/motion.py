@@ -1,7 +1,7 @@
 """A track held against its conditions: what a falling sphere cannot do, and which mistake makes it seem to.
 
-Free fall tells clock and unit of length apart from the fluid: see :mod:`.falls`. Where it is right, the terminal speed
-tells viscosity, diameter and densities.
+Free fall tells clock and unit of length apart from the fluid: see :mod:`.falls`. Where it is right, the
+terminal speed tells viscosity, diameter and densities.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from restitution.conditions import Conditions
 
 SLOW, FAST = 0.65, 2.5
-"""Parts of free fall between which the sphere accelerates about its apex: 0.9 to 1.04 in the shipped records; up to
-twice as much where a wake three times as strong as theirs outlasts the rise."""
+"""Parts of free fall between which the sphere accelerates about its apex: 0.9 to 1.04 in the shipped
+records; up to twice as much where a wake three times as strong as theirs outlasts the rise."""
 SLOW_AT_FIRST, FAST_AT_FIRST = 0.4, 2.5
 """The same of an approach, where added mass, history and drag differ more."""
 BEYOND = 1.3
@@ -34,14 +34,19 @@ _LIGHT = 30.0
 
 def of_track(track: Track, found: Contacts, conditions: Conditions, where: str = "") -> list[Doubt]:
     """Everything doubtful about a track under its conditions; ``found`` are its contacts."""
-    doubts = _direction(track, found, conditions) or [
-        *_hovering(track, found, conditions), *_centre(track, conditions), *_pace(track, found, conditions)
-    ]
+    doubts = _direction(track, found, conditions)
+    if not doubts:
+        doubts = [
+            *_hovering(track, found, conditions),
+            *(_pace(track, found, conditions) or _centre(track, conditions)),
+        ]
     return [replace(doubt, where=where) for doubt in doubts]
 
 
 def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
-    """Records that are upside down: flights curve away from the wall, or the sphere rests at its greatest value."""
+    """Records that are upside down: flights curve away from the wall, or the sphere rests at its greatest
+    value.
+    """
     over = replace(track, value=-track.value)
     other = contacts(over)
     g = abs(conditions.free_fall)
@@ -51,12 +56,15 @@ def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Do
     if track.quantity == "velocity":
         slope = _typical_slope(track)
         if slope > 0.2 * g and upside >= falling:
-            message = "velocities grow between contacts, as those of a fall that is counted positive: --direction down"
+            message = (
+                "velocities grow between contacts, as those of a fall that is counted positive: --direction down"
+            )
             return [Doubt("direction", message)]
         return []
     if other.level is not None and found.level is None:
         message = (
-            "is upside down: the sphere comes to rest at the greatest value of the record, as a distance fallen does: "
+            "is upside down: the sphere comes to rest at the greatest value of the record, as a distance "
+            "fallen does: "
             "--direction down --wall rest"
         )
         return [Doubt("direction", message)]
@@ -102,7 +110,8 @@ def _centre(track: Track, conditions: Conditions) -> list[Doubt]:
         return []
     lowest = float(np.min(track.value))
     message = (
-        f"the gap never falls below {lowest:.3g} m, {lowest / d:.2g} d: is it the height of the centre? It must be "
+        f"the gap never falls below {lowest:.3g} m, {lowest / d:.2g} d: is it the height of the centre? "
+        "It must be "
         "that of the lowest point (--point centre)"
     )
     return [Doubt("centre", message)]
@@ -116,7 +125,11 @@ def _pace(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
     turning, coming = falls.apexes(track, found), falls.approach(track, found)
     fast = falls.fastest(track, found)
     # Of the surest apex, mostly that of the highest flight, where a wake has the least part.
-    share = min(turning, key=lambda fall: fall.error / abs(fall.acceleration)).acceleration / g if turning else math.nan
+    share = (
+        min(turning, key=lambda fall: fall.error / abs(fall.acceleration)).acceleration / g
+        if turning
+        else math.nan
+    )
     slow, quick = SLOW, FAST
     if not turning and coming is not None and coming.mean_speed < 0.5 * terminal:
         expected, slow, quick = g * (1 - coming.mean_speed / terminal), SLOW_AT_FIRST, FAST_AT_FIRST
@@ -138,14 +151,18 @@ def _clock(share: float, g: float) -> Doubt:
     if share < 1:
         factor = math.sqrt(1 / share)
         words = (
-            f"the sphere accelerates in free flight by {share * g:.2g} m/s2, 1/{1 / share:.3g} of free fall under these "
+            f"the sphere accelerates in free flight by {share * g:.2g} m/s2, 1/{1 / share:.3g} of free "
+            "fall under these "
             f"conditions ({g:.2g} m/s2): times are {factor:.2g} times too long (a film played slowly: --fps, "
-            f"--time-unit), or lengths {1 / share:.2g} times too small (--unit; dimensionless numbers: --unit d){density}"
+            f"--time-unit), or lengths {1 / share:.2g} times too small (--unit; dimensionless numbers: "
+            f"--unit d){density}"
         )
     else:
         words = (
-            f"the sphere accelerates in free flight by {share * g:.2g} m/s2, {share:.3g} times free fall under these "
-            f"conditions ({g:.2g} m/s2): times are {math.sqrt(share):.2g} times too short (--fps, --time-unit), or "
+            f"the sphere accelerates in free flight by {share * g:.2g} m/s2, {share:.3g} times free fall "
+            "under these "
+            f"conditions ({g:.2g} m/s2): times are {math.sqrt(share):.2g} times too short (--fps, "
+            "--time-unit), or "
             f"lengths {share:.2g} times too large (--unit, --pixel){density}"
         )
     return Doubt("clock", words)
@@ -167,7 +184,8 @@ def _too_fast(fast: float, terminal: float, conditions: Conditions) -> Doubt:
     question = likely[0] if likely else "are viscosity, diameter and densities right, and the unit of length?"
     return Doubt(
         "speed",
-        f"the sphere moves at {fast:.3g} m/s, {fast / terminal:.2g} times its terminal speed under these conditions "
+        f"the sphere moves at {fast:.3g} m/s, {fast / terminal:.2g} times its terminal speed under these "
+        "conditions "
         f"({terminal:.2g} m/s): {question}",
     )
 
@@ -175,13 +193,17 @@ def _too_fast(fast: float, terminal: float, conditions: Conditions) -> Doubt:
 def _too_slow(speed: float, terminal: float) -> Doubt:
     return Doubt(
         "speed",
-        f"the sphere falls steadily at {speed:.3g} m/s, where it reaches {terminal:.2g} m/s under these conditions: is "
-        "the viscosity too small (of a kinematic one write its unit, as in \"10 cSt\"), the diameter that of another "
+        f"the sphere falls steadily at {speed:.3g} m/s, where it reaches {terminal:.2g} m/s under these "
+        "conditions: is "
+        'the viscosity too small (of a kinematic one write its unit, as in "10 cSt"), the diameter that '
+        "of another "
         "sphere, or the vessel narrow?",
     )
 
 
-def replace_in(conditions: Conditions, viscosity: float = 1, diameter: float = 1, density: float = 1) -> Conditions:
+def replace_in(
+    conditions: Conditions, viscosity: float = 1, diameter: float = 1, density: float = 1
+) -> Conditions:
     """The conditions with some numbers multiplied."""
     fluid, sphere = conditions.fluid, conditions.sphere
     own = {"density": density * fluid.density, "viscosity": viscosity * fluid.viscosity}
@@ -192,7 +214,9 @@ def replace_in(conditions: Conditions, viscosity: float = 1, diameter: float = 1
 
 
 def _terminal(conditions: Conditions) -> float:
-    """The terminal speed; of a sphere lighter than the fluid that of its rise, inf where it neither falls nor rises."""
+    """The terminal speed; of a sphere lighter than the fluid that of its rise, inf where it neither falls
+    nor rises.
+    """
     from restitution.laws.drag import SchillerNaumann1935, steady
 
     c = conditions

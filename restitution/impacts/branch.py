@@ -29,9 +29,10 @@ REBOUND = (5,)
 _COEFFICIENTS = 6
 MOST_SINGLE = 64
 """Frames of a branch up to which each is a point of its own."""
-_APPROACH_POINTS, _REBOUND_POINTS = (16, 24), (8, 16)
-"""Of a longer branch: the nearest frames that are so, and the means that the others are taken together to, the longer
-the farther from the contact. Fewer after a rebound, where what is far tells less of what is near."""
+_APPROACH_POINTS, _REBOUND_POINTS = (24, 24), (8, 16)
+"""Of a longer branch: the nearest frames that are so, and the means that the others are taken together to,
+the longer the farther from the contact. Fewer after a rebound, where what is far tells less of what is
+near."""
 _MOST_WINDOWS = 24
 
 
@@ -137,9 +138,9 @@ def points(tau: NDArray, value: NDArray, sigma: float, rebound: bool) -> Points:
 def average(branch: Points, quantity: str, prior: Prior, rebound: bool) -> Branch:
     """Fit all windows and orders to the points of a branch.
 
-    Of velocities the gap polynomial without its constant is fitted. At least two points are needed. Where no fit with four or more degrees of
-    freedom comes within twice the noise (chi^2_aug over degrees of freedom above 4), the noise is scaled up to
-    that of the best one.
+    Of velocities the gap polynomial without its constant is fitted. At least two points are needed. Where no
+    fit with four or more degrees of freedom comes within twice the noise (chi^2_aug over degrees of freedom
+    above 4), the noise is scaled up to that of the best one.
     """
     N, first = len(branch.value), _first(quantity)
     normal = prior.mean(), prior.sigma(_speed(branch.tau, branch.value, branch.sigma, quantity))

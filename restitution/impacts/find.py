@@ -73,8 +73,8 @@ def find_impacts(
 
     Returns
     -------
-    Rows in the schema of impacts; a contact that cannot be evaluated gives no row but a note. Frames that no flight
-    passes through are left out. What contradicts the conditions is in ``doubts``.
+    Rows in the schema of impacts; a contact that cannot be evaluated gives no row but a note. Frames that no
+    flight passes through are left out. What contradicts the conditions is in ``doubts``.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def _remarks(track: Track, found: Contacts) -> list[str]:
 def _with_quoted_first(track: Track, conditions: Conditions, found: Contacts, notes: list[str]) -> list[Contact]:
     """The contacts, preceded by the one before the first frame if the record begins on a rebound."""
     end = found.contacts[0].approach.stop if found.contacts else len(track.time_s)
-    rising = begins_on_rebound(track, end)
+    rising = begins_on_rebound(track, found)
     if rising and conditions.impact is not None:
         return [Contact(range(0), None, range(end)), *found.contacts]
     if rising:

@@ -113,7 +113,9 @@ class SpeedMeasure:
             self._fit(after, origin, True).draw(DRAWS, rng),
         )
         if self.track.quantity == "velocity":
-            tau = left = rng.uniform(low - origin, high - origin, DRAWS)  # velocities do not say where between frames
+            tau = left = rng.uniform(
+                low - origin, high - origin, DRAWS
+            )  # velocities do not say where between frames
             if lasts:
                 beside = 2 * float(np.median(np.diff(self.track.time_s)))
                 tau = low - origin + rng.uniform(0, beside, DRAWS)

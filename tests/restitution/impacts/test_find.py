@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from restitution import datasets
-from restitution.conditions import Conditions
-from restitution.errors import InputError
 from restitution.impacts import find_impacts
 from restitution.tables import check_table
 from restitution.tracks import noise
@@ -252,5 +250,3 @@ def test_the_table_obeys_the_impact_schema(tmp_path):
     path = tmp_path / "impacts.csv"
     shipped("li2012_drop2", "contact").table().to_csv(path, index=False)
     assert check_table(path, datasets.schema("impact")) == []
-
-
