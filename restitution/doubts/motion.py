@@ -63,14 +63,14 @@ def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Do
         return []
     if other.level is not None and found.level is None:
         message = (
-            "is upside down: the sphere comes to rest at the greatest value of the record, as a distance "
+            "the record is upside down: the sphere comes to rest at the greatest value of the record, as a distance "
             "fallen does: "
             "--direction down --wall rest"
         )
         return [Doubt("direction", message)]
     if upside > falling and len(other.contacts) and _convex(track):
         message = (
-            "is upside down: its flights curve away from the wall, as those of a distance fallen or of rows of an "
+            "the record is upside down: its flights curve away from the wall, as those of a distance fallen or of rows of an "
             "image do: --direction down --wall X"
         )
         return [Doubt("direction", message)]
