@@ -63,14 +63,18 @@ def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Do
         return []
     if other.level is not None and found.level is None:
         message = (
-            "the record is upside down: the sphere comes to rest at the greatest value of the record, as a distance "
+            "the record is upside down: the sphere comes to rest at the greatest value of the record, as "
+            "a distance "
             "fallen does: "
             "--direction down --wall rest"
         )
         return [Doubt("direction", message)]
-    if upside > falling and len(other.contacts) and _convex(track):
+    # A contact that is taken for an apex turns much faster than gravity does.
+    turned = [sum(SLOW * g < fall.acceleration < FAST * g for fall in some) for some in (here, there)]
+    if _convex(track) and len(other.contacts) and (upside > falling or turned[1] > turned[0]):
         message = (
-            "the record is upside down: its flights curve away from the wall, as those of a distance fallen or of rows of an "
+            "the record is upside down: its flights curve away from the wall, as those of a distance "
+            "fallen or of rows of an "
             "image do: --direction down --wall X"
         )
         return [Doubt("direction", message)]
@@ -88,7 +92,7 @@ def _convex(track: Track) -> bool:
     y = track.value
     second = y[2 * s :] - 2 * y[s:-s] + y[: -2 * s]
     seen = second[np.abs(second) > 5 * track.sigma]
-    return len(seen) > 3 and np.count_nonzero(seen > 0) > 0.7 * len(seen)
+    return len(seen) > 3 and np.count_nonzero(seen > 0) > 0.5 * len(seen)
 
 
 def _hovering(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:

@@ -19,7 +19,9 @@ def test_what_is_measured_is_not_doubted(K, seed):
 
 
 @pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize(("factor", "word"), [(9.0, "st_d"), (1 / 9, "--stokes st)"), (1e3, "mPa s"), (1e-3, "mPa s")])
+@pytest.mark.parametrize(
+    ("factor", "word"), [(9.0, "st_d"), (1 / 9, "--stokes st)"), (1e3, "mPa s"), (1e-3, "mPa s")]
+)
 def test_another_stokes_number_is_named(factor, word, seed):
     St, e, e_dry = impacts(11.0, seed)
     (doubt,) = of_impacts(factor * St, e, e_dry, ["my.csv"])

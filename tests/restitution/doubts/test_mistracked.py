@@ -55,7 +55,9 @@ def test_impacts_are_those_without_the_frames():
     found, plain = (find_impacts(t, STEEL_IN_OIL).rows for t in (replace(track, value=value), track))
     assert len(found) == len(plain)
     for row, other in zip(found, plain, strict=True):
-        assert row["impact_speed_m_s"] == pytest.approx(other["impact_speed_m_s"], abs=other["impact_speed_sigma_m_s"])
+        assert row["impact_speed_m_s"] == pytest.approx(
+            other["impact_speed_m_s"], abs=other["impact_speed_sigma_m_s"]
+        )
     assert truths
     clean = cleaned(replace(track, value=value), "t.csv")
     assert (clean.doubts[0].name, clean.doubts[0].where) == ("mistracked", "t.csv")

@@ -31,12 +31,17 @@ def steady_fall(c):
 
 
 def ordinary(seed, quantity="gap"):
-    """A sphere of 2 to 12 mm in a liquid of 1 to 20 mPa s that bounces twice, as a camera sees it; its conditions."""
+    """A sphere of 2 to 12 mm in a liquid of 1 to 20 mPa s that bounces twice, as a camera sees it; its
+    conditions."""
     rng = np.random.default_rng([99, seed])
     c = Conditions.model_validate(
         {
             "fluid": {"density": rng.uniform(800, 1200), "viscosity": 10 ** rng.uniform(-3, -1.7)},
-            "sphere": {"diameter": rng.uniform(2e-3, 12e-3), "density": rng.choice([2500.0, 7800.0]), "e_dry": 0.97},
+            "sphere": {
+                "diameter": rng.uniform(2e-3, 12e-3),
+                "density": rng.choice([2500.0, 7800.0]),
+                "e_dry": 0.97,
+            },
         }
     )
     d, g = c.sphere.diameter, c.gravity
@@ -153,7 +158,7 @@ def test_heights_of_the_centre_are_named(seed):
 @pytest.mark.parametrize("seed", range(8))
 def test_a_minimum_in_mid_air_is_no_contact(seed):
     """Twenty neighbouring frames of a fall follow something else, deeper by a third of the height."""
-    track, c = ordinary(seed)
+    track, _ = ordinary(seed)
     value = track.value.copy()
     falling = np.flatnonzero(value < 0.8 * value[0])[0]
     height = value[falling]
