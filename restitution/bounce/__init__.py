@@ -21,11 +21,12 @@ restitutions at once; ``ehd_solution`` is a rebound of its own, of a soft sphere
 """
 
 from restitution.bounce.agreement import distance_from_contact_d, release_of
-from restitution.bounce.closures import Closures, Release, terminal_speed
+from restitution.bounce.closures import Closures, Release
 from restitution.bounce.drive import Drive
 from restitution.bounce.edges import law_at
 from restitution.bounce.model import Impact, IntegrationError, Trajectory, bounce
 from restitution.bounce.wake import OwnWake
+from restitution.laws.drag import terminal_speed
 
 __all__ = [
     "Closures",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
-from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -16,7 +15,7 @@ from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.laws.brenner_1961 import Brenner1961
 from restitution.laws.cavitation import ATMOSPHERE
-from restitution.laws.drag import DragLaw, SchillerNaumann1935, steady
+from restitution.laws.drag import DragLaw, SchillerNaumann1935
 from restitution.laws.film import YangHunt2008
 from restitution.laws.history import DorganLoth2007, HistoryLaw
 from restitution.laws.rebound import ReboundLaw
@@ -184,24 +183,3 @@ class Release:
         if self.drive is not None:
             return self.drive.lagged(rates)
         return np.full(len(rates), -self.speed if self.developed else 0.0)
-
-
-def excess_weight(conditions: Conditions) -> float:
-    """Gravity less buoyancy in N; raises :class:`InputError` for a sphere that does not sink."""
-    ratio = conditions.sphere.density / conditions.fluid.density
-    if not ratio > 1:
-        raise InputError(
-            Defect("is the density ratio sphere to fluid; only a sphere heavier than the fluid falls on the wall",
-                   field="sphere.density / fluid.density", value=f"{ratio:g}")
-        )  # fmt: skip
-    volume = math.pi * conditions.sphere.diameter**3 / 6
-    return (conditions.sphere.density - conditions.fluid.density) * volume * conditions.gravity
-
-
-@lru_cache(maxsize=256)
-def terminal_speed(conditions: Conditions, drag: DragLaw | None = None) -> float:
-    """The steady speed in m/s far from walls at which ``drag`` balances gravity less buoyancy."""
-    c = conditions
-    return steady(
-        drag or SchillerNaumann1935(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity
-    )

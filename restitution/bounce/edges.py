@@ -22,10 +22,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from restitution.bounce.added_mass import added_mass
-from restitution.bounce.closures import Closures, Release, excess_weight, terminal_speed
+from restitution.bounce.closures import Closures, Release
 from restitution.bounce.model import Trajectory, bounce
 from restitution.conditions import Conditions
 from restitution.errors import ConventionError, Defect, InputError
+from restitution.laws.drag import excess_weight, terminal_speed
 from restitution.laws.rebound import ReboundLaw
 from restitution.stokes import Speed, StokesNumber, film_edge
 

@@ -39,6 +39,7 @@ def add_data(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML, where columns do not say")
     options.add_columns(parser)
     options.add_track(parser)
+    options.add_strict(parser)
     parser.add_argument(
         "--allow-unphysical", action="store_true", help="take e_eff above 1 or below 0 as measured"
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from restitution.commands import options
-from restitution.commands.console import show, show_rows
+from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,6 +51,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     options.add_columns(parser)
     options.add_track(parser)
+    options.add_strict(parser)
     parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
     parser.add_argument(
         "--template", metavar="FOLDER", help="write track.csv, conditions.toml, settings.toml to start from"
@@ -59,6 +61,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> None:
     """Print the impacts of a track, and write them where asked."""
+    from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
     from restitution.impacts.find import find_impacts
@@ -79,14 +82,19 @@ def run(args: argparse.Namespace) -> None:
     impacts = find_impacts(
         track, conditions, args.speed, args.stokes, Path(args.track).stem, kind, args.frames, args.film
     )
+    if args.strict:
+        refuse(replace(doubt, where=args.track) for doubt in impacts.doubts)
     table = impacts.table()
     if args.out:
-        write_whole(args.out, table_text(table.assign(time_s=_times(table))))
+        names = [f"doubt: {doubt.name}" for doubt in impacts.doubts]
+        notes = table.note.map(lambda note: "; ".join(filter(None, [note, *names])))
+        write_whole(args.out, table_text(table.assign(time_s=_times(table), note=notes)))
     if said.reading:
         show(f"read: {said.reading}")
     _show(table, impacts.sigma, "m" if track.quantity == "gap" else "m/s")
     for note in (*said.notes, *impacts.notes):
         show(f"note: {note}")
+    show_doubts(impacts.doubts)
 
 
 def _check_output(args: argparse.Namespace) -> None:
@@ -165,7 +173,7 @@ def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
         v_in = with_error(r.impact_speed_m_s, r.impact_speed_sigma_m_s, 4)
         v_out = with_error(r.rebound_speed_m_s, r.rebound_speed_sigma_m_s, 4)
         e = with_error(r.e_eff, r.e_eff_sigma, 3) if resolved else f"< {r.e_eff_upper:.3f}"
-        St = with_error(r.stokes, r.stokes_sigma, 1)
+        St = with_error(r.stokes, r.stokes_sigma, 1 if r.stokes > 3 else 3)
         rows.append((str(r.impact), f"{r.time_s:.5g}" if short else f"{r.time_s:.4f}", v_in, v_out, St, e, r.note))
     first = table.iloc[0]
     show(f"speed: {first.speed_definition}, Stokes number: {first.stokes_convention}, noise: {sigma:.2g} {unit}")

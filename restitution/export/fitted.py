@@ -133,7 +133,12 @@ def fit_closure(path: str | Path, levels: Mapping[str, str] | None = None) -> Cl
         closed=record is None or record.formula is not None,
         upper={"e_dry": 1.0},
         functions={} if record else _FUNCTIONS,
-        identity=(f"fit: {Path(path).name} sha256 {digest}", *hashes, *(f"note: {n}" for n in result.notes)),
+        identity=(
+            f"fit: {Path(path).name} sha256 {digest}",
+            *hashes,
+            *(f"note: {n}" for n in result.notes),
+            *(f"doubt: {d}" for d in result.doubts),
+        ),
         interval=interval,
     )
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.reading.reading import Reading
+from restitution.doubts import Doubt, of_impacts
 from restitution.errors import Defect, InputError
 from restitution.stokes import H_FILM, film_edge
 
@@ -137,6 +138,23 @@ def check_physical(o: Observations, how: Reading) -> Observations:
     if defects:
         raise InputError(*defects)
     return o
+
+
+def doubts_about(o: Observations, e_dry: float | None = None) -> tuple[Doubt, ...]:
+    """What is doubtful about impacts: about their records, and whether the film takes what it takes elsewhere.
+
+    ``e_dry`` is taken where the impacts do not state it.
+    """
+    try:
+        St = o.St * o.ratio_to("st")
+    except InputError:  # fluid and sphere are not known: near enough, but for a factor that all conventions state
+        St = o.St
+    dry = np.where(np.isfinite(o.e_dry), o.e_dry, _TYPICAL_E_DRY if e_dry is None else e_dry)
+    return (*o.doubts, *of_impacts(St, o.e, dry, tuple(o.files)))
+
+
+_TYPICAL_E_DRY = 0.97
+"""Of steel and glass, where nobody states it."""
 
 
 def _outside(e: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Conditions
+from restitution.doubts import Doubt
 from restitution.errors import ConventionError, Defect, InputError
 from restitution.stokes import H_FILM, Speed, StokesNumber, film_edge
 
@@ -59,6 +60,8 @@ class Observations(Showing):
     files: Mapping[str, str] = field(default_factory=dict)
     """sha256 of each file."""
     notes: tuple[str, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
+    """About the records that they come from."""
     simulated: bool = False
     """Whether they come from a simulation; such ones are never joined with measured ones."""
 
@@ -71,6 +74,7 @@ class Observations(Showing):
         places: tuple[tuple[str, int], ...] = (),
         files: Mapping[str, str] | None = None,
         notes: tuple[str, ...] = (),
+        doubts: tuple[Doubt, ...] = (),
     ) -> Observations:
         """Impacts in the columns of the impact table, as :func:`restitution.impacts.find_impacts` gives them.
 
@@ -114,6 +118,7 @@ class Observations(Showing):
             places=places,
             files=dict(files or {}),
             notes=notes,
+            doubts=doubts,
         )
 
     def shown(self) -> Table:
@@ -258,4 +263,5 @@ def join(parts: list[Observations]) -> Observations:
         places=tuple(x for p in parts for x in p.places),
         files={name: digest for p in parts for name, digest in p.files.items()},
         notes=tuple(dict.fromkeys(note for p in parts for note in p.notes)),
+        doubts=tuple(dict.fromkeys(doubt for p in parts for doubt in p.doubts)),
     )

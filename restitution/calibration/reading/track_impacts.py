@@ -52,14 +52,17 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
     stokes = how.stokes or "st"
     edge = H_FILM if how.edge is None else film_edge(how.edge, "--edge")
     impacts = find_impacts(track, conditions, how.speed, stokes, Path(name).stem, h_film=edge)
+    doubts = tuple(replace(doubt, where=name) for doubt in impacts.doubts)
     if not impacts.rows:
-        raise InputError(Defect("no impact is resolved in this track", file=name))
+        rule = "; ".join(["no impact is resolved in this track", *(doubt.message for doubt in doubts)])
+        raise InputError(Defect(rule, file=name))
     o = Observations.from_impacts(
         impacts.rows,
         conditions,
         places=tuple((f"{name}, impact", int(row["impact"])) for row in impacts.rows),
         files={name: digest},
         notes=tuple(f"{name}: {note}" for note in impacts.notes),
+        doubts=doubts,
     )
     return check_physical(o, how)
 

@@ -134,6 +134,8 @@ class FitResult(Showing, Record):
     files: dict[str, str]
     versions: dict[str, str]
     notes: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
+    """What contradicts what such data must obey, with the likely mistake."""
 
     def shown(self) -> Table:
         """The parameters with their intervals; :func:`restitution.calibration.result.fit_summary.describe` says
@@ -252,6 +254,7 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         files=dict(o.files),
         versions={name: metadata.version(name) for name in _LIBRARIES},
         notes=fit.notes,
+        doubts=tuple(map(str, fit.doubts)),
     )
 
 

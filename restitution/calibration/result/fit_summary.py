@@ -44,6 +44,7 @@ def describe(result: FitResult) -> list[tuple[str, str]]:
             ends = ", ".join(f"{level} {x[j][0]:.5g} to {x[j][1]:.5g}" for level, x in chain.intervals.items())
             facts.append((f"  {name}", f"median {chain.median[j]:.5g} ({ends}; prior {chain.priors[name]})"))
     facts += [("note", note) for note in result.notes]
+    facts += [("doubt", doubt) for doubt in result.doubts]
     return facts
 
 

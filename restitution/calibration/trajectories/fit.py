@@ -20,12 +20,15 @@ from restitution.calibration.reading.reading import Reading
 from restitution.calibration.reading.track_impacts import from_track
 from restitution.calibration.result.fit_result import FitResult, TrajectoryRecord, result_of
 from restitution.calibration.result.fitted_law import FittedLaw
-from restitution.calibration.trajectories.doubts import in_words
+from restitution.calibration.trajectories.doubts import of_parameters, of_records, within_the_film
 from restitution.calibration.trajectories.recordings import Recording
 from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory, distance_d, whole_trajectories
+from restitution.doubts import Doubt
 from restitution.errors import Defect, InputError
 from restitution.stokes import H_FILM, Speed, film_edge
 
+FEW = 2
+"""Rebounds up to which laws are not ranked: without one of them nothing is left that tells their scatter."""
 CLEAR = 5.0
 """Ln of the evidence by which records are said to prefer the model with or without wake; odds of 150."""
 
@@ -46,6 +49,10 @@ class Measured:
         """All records under each kind of model; raises :class:`InputError` for an edge out of range."""
         edge = film_edge(edge)
         return cls(tuple(records), {wake: whole_trajectories(records, wake, edge) for wake in wakes}, edge)
+
+    def rebounds_outside(self) -> int:
+        """How many rebounds leave the film, of all records."""
+        return sum(int(t.outside().sum()) for t in self.trajectories[self.preferred])
 
     def preference(self) -> float:
         """Ln of the evidence with wake over that without, all records; 0 where one of them was not asked for."""
@@ -123,8 +130,14 @@ class TrajectoryFit:
         """What is kept: the fit, and beside it every record's unknowns, noise and distances."""
         base = result_of(self.fit)
         records = tuple(self._record(t) for t in self.trajectories)
-        notes = [*base.notes, self.wake_in_words(), *in_words(self.trajectories, self.fit, self.slopes)]
-        return base.model_copy(update={"trajectories": records, "notes": tuple(notes)})
+        notes = (*base.notes, self.wake_in_words(), *within_the_film(self.trajectories))
+        doubts = tuple(map(str, self.doubts))
+        return base.model_copy(update={"trajectories": records, "notes": notes, "doubts": doubts})
+
+    @property
+    def doubts(self) -> tuple[Doubt, ...]:
+        """What is doubtful about records, impacts and model."""
+        return (*of_records(self.trajectories), *self.fit.doubts, *of_parameters(self.fit, self.slopes))
 
     def wake_in_words(self) -> str:
         """Which model the frames prefer."""

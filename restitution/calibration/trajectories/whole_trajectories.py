@@ -31,6 +31,7 @@ from restitution.calibration.trajectories.flights import Flights, fall_speed, fl
 from restitution.calibration.trajectories.likelihood import Marginal, Noise, RecordLikelihood
 from restitution.calibration.trajectories.recordings import Recording
 from restitution.calibration.trajectories.unknowns import restitution_name
+from restitution.doubts import refuse
 from restitution.errors import Defect, InputError
 from restitution.impacts.find import find_impacts
 from restitution.stokes import H_FILM, Speed, convention
@@ -185,6 +186,7 @@ def whole_trajectory(r: Recording, wake: bool, edge: float = H_FILM) -> WholeTra
             own = likelihood.prior[1] * np.sqrt(np.diag(m.moments()[1]))
             steps, narrow = np.clip(likelihood.named(own).flight, 0.02 * steps, steps), True
     else:
+        refuse(doubt for doubt in r.doubts if doubt.name == "speed")
         raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", file=r.name))
     return _summary(r, integrate, likelihood, m)
 
