@@ -9,6 +9,7 @@ from restitution import datasets
 from restitution.bounce.edges import restitution_at
 from restitution.calibration.result.fit_result import read_fit
 from restitution.cli import main
+from restitution.export import fit_closure
 
 PAIR = ("--fluid", "density=935,viscosity=0.01", "--sphere", "diameter=3e-3,density=7800,e_dry=0.97")
 
@@ -48,6 +49,7 @@ def fitted(case, *arguments):
 )
 def test_the_edge_of_a_table_is_kept_with_the_fit(case, column, option, edge):
     assert fitted(case, table(case, "my.csv", column), *option).edge_d == edge
+    assert fit_closure("fit.json").edge == edge
 
 
 def test_speeds_that_know_no_edge_have_none(case):

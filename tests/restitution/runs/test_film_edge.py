@@ -1,5 +1,7 @@
 """One black box for both models: its edge, e_eff converted to it, e_eff of a record, what is refused."""
 
+import math
+
 import pytest
 
 from restitution import cases
@@ -119,3 +121,42 @@ after_contact = 0.004
         leg = within[sign * within.vz_m_s > 0]
         assert len(leg) > 5
         assert (leg.vz_m_s**2 + 2 * g * leg.gap_m).to_numpy() == pytest.approx(speed**2, rel=1e-6)
+
+
+def short_run(name, speed, **contact):
+    """Motion of a sphere that goes 1.5 d at 10 cells each and 3 ms after its contact; the case; the contact."""
+    case = case_of(name, speed, **contact)
+    numerics = case.numerics.model_copy(update={"width_d": 4.0, "height_d": 5.0})
+    release = case.release.model_copy(update={"gap_d": 1.5})
+    span = case.run.model_copy(update={"after_contact": 0.003})
+    case = case.model_copy(update={"numerics": numerics, "release": release, "run": span})
+    run = ResolvedRun(case)
+    while not run.finished:
+        run.advance()
+    return run.motion(), case, run.contacts[0]
+
+
+def e_at(motion, case, edge):
+    """The ratio of the speeds at an edge, both carried to the wall by free fall."""
+    height = edge * case.sphere.diameter
+    fallen = 2 * case.conditions.free_fall * height
+    first = motion[(motion.time_s < 0) & (motion.gap_m > height)].iloc[-1]
+    last = motion[(motion.time_s > 0) & (motion.gap_m > height)].iloc[0]
+    return math.sqrt((last.vz_m_s**2 + fallen) / (first.vz_m_s**2 + fallen))
+
+
+def test_dry_restitution_under_a_resolved_film_is_that_of_the_point_particle():
+    """At 10 cells a diameter and a lattice speed of 0.025, by the speeds at 0.1 and 0.2 d."""
+    motion, case, _ = short_run("gondret_st152_10", 0.025)
+    path = predict(case).table().rename(columns={"velocity_m_s": "vz_m_s"})
+    for edge in (0.1, 0.2):
+        assert e_at(motion, case, edge) == pytest.approx(e_at(path, case, edge), abs=0.01), edge
+
+
+def test_e_eff_imposed_does_not_depend_on_the_lattice_speed():
+    """Gap 3 ms after the contact over the speed there: what is left of the rebound is the fluid's."""
+    found = []
+    for speed in (0.05, 0.025):
+        motion, _, contact = short_run("gondret_st152_10_measured", speed, measured=(0.8,), edge_d=0.2)
+        found.append(motion.gap_m.iloc[-1] / contact.speed_in_m_s)
+    assert found[0] == pytest.approx(found[1], rel=0.01)

@@ -96,7 +96,7 @@ def test_nothing_of_the_run_is_left_but_its_results(run):
 
 
 def test_measured_restitution_is_what_the_solver_applies(tmp_path):
-    extra = '[film]\nform = "none"\n[contact]\nmode = "effective"\nmeasured = [0.7, 0.4]\n'
+    extra = '[film]\nform = "none"\n[contact]\nmode = "effective"\nmeasured = [0.7, 0.4]\nedge_d = 0.4\n'
     simulate.simulate(tiny(tmp_path, extra), tmp_path / "out")
     contacts = json.loads((tmp_path / "out" / "run.json").read_text())["contacts"]
     assert contacts[0]["speed_out_m_s"] / contacts[0]["speed_in_m_s"] == pytest.approx(0.7, rel=1e-4)
