@@ -11,14 +11,16 @@ import numpy as np
 
 from lbm import arguments
 from lbm.faces import passes
-from lbm.faces.records import Face
+from lbm.faces.records import Face, NoSlip
 from lbm.flow import Flow, Force
 from lbm.fluid import cache, kernels
+from lbm.fluid.places import places
 from lbm.fluid.stencil import Q
 from lbm.io.interrupt import interrupts_deferred
 from lbm.io.progress import Progress
 from lbm.observers import DivergenceGuard, Observer, checked
 from lbm.rates import Rates
+from lbm.rates_by_place import RatesByPlace
 
 __all__ = ["Simulation"]
 
@@ -32,7 +34,8 @@ class Simulation(Flow):
     Parameters
     ----------
     shape : cells along x, y, z, at least 4 each.
-    rates : relaxation rates, which set the viscosity; see :class:`lbm.rates.Rates`.
+    rates : relaxation rates, which set the viscosity: the same everywhere (:class:`lbm.Rates`) or other ones near
+        no-slip walls (:class:`lbm.RatesByPlace`).
     faces : boundary by face ("x-", "x+", ...) or axis ("x", "y", "z"): one of "periodic" (default),
         "no-slip", "free-slip", "outlet", or a record of :mod:`lbm.faces`.
     force : force density, 3 components, or a function of time giving them (called at whole steps).
@@ -59,7 +62,7 @@ class Simulation(Flow):
     def __init__(
         self,
         shape: tuple[int, int, int],
-        rates: Rates,
+        rates: Rates | RatesByPlace,
         *,
         faces: dict[str, Face | str] | None = None,
         force: Force | None = None,
@@ -69,14 +72,15 @@ class Simulation(Flow):
         super().__init__(shape, rates, faces=faces, force=force, dtype=dtype)
         self.threads = arguments.threads(threads, math.prod(self.shape))
         self._face_passes = passes.passes(self.faces, self.lattice.grid)
-        self._scaled_rates = rates.scaled(self.dtype)
+        walls = [isinstance(face, NoSlip) for face in self.faces]
+        self._places = places(rates.layers(), walls, self.shape, self.dtype)
 
     def compile(self) -> float:
         """Compile, or load from the cache, the kernels this simulation needs; seconds taken."""
         start = time.perf_counter()
         lattice, force = self.lattice, self._typed(self._force_at(0.0))
-        kernels.sweep(lattice.populations, lattice.grid, lattice.rows, 0, self._scaled_rates, force, 0)
-        kernels.sweep_two(lattice.populations, lattice.grid, lattice.rows, self._scaled_rates, force, 1, 1, 0)
+        kernels.sweep(lattice.populations, lattice.grid, lattice.rows, 0, self._places, force, 0)
+        kernels.sweep_two(lattice.populations, lattice.grid, lattice.rows, self._places, force, 1, 1, 0)
         return time.perf_counter() - start
 
     def run(
@@ -163,12 +167,12 @@ class Simulation(Flow):
         planes = self.shape[2]
         blocks = max(1, min(self.threads, planes // arguments.SMALLEST))
         tile = max(8, _TILE_BYTES // (3 * Q * lattice.grid.row * lattice.dtype.itemsize))
-        grid, rows, rates = lattice.grid, lattice.rows, self._scaled_rates
+        grid, rows, where = lattice.grid, lattice.rows, self._places
         with interrupts_deferred() as held:
             while self.steps < until and not held:
                 if plain and lattice.parity == 0 and until - self.steps >= 2:
                     with self._changing():
-                        kernels.sweep_two(lattice.populations, grid, rows, rates, typed, blocks, tile, planes)
+                        kernels.sweep_two(lattice.populations, grid, rows, where, typed, blocks, tile, planes)
                         self._steps += 2
                     continue
                 if callable(self.given_force):
@@ -177,7 +181,7 @@ class Simulation(Flow):
                 for change in corrections:
                     change.prepare(lattice, self.steps)
                 with self._changing():
-                    kernels.sweep(lattice.populations, grid, rows, lattice.parity, rates, typed, planes)
+                    kernels.sweep(lattice.populations, grid, rows, lattice.parity, where, typed, planes)
                     lattice.parity ^= 1
                     for change in corrections:
                         change(lattice, self.steps, force)
