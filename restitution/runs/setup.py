@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import lbm
-from lbm.rates import PRESETS
+from lbm.rates_by_place import PRESETS
 from lbm.scales import FlowScales
 from lbm.spheres import (
     Contact,
@@ -39,7 +39,7 @@ class Setup:
 
     flow: FlowScales
     shape: tuple[int, int, int]
-    rates: lbm.Rates
+    rates: lbm.Rates | lbm.RatesByPlace
     faces: dict[str, str]
     precision: str
     interpolation: str
