@@ -18,10 +18,11 @@ from lbm.errors import DivergenceError, InputError, OutputError, OutsideRangeWar
 from lbm.faces.records import FreeSlip, Inlet, NoSlip, Outlet, Periodic
 from lbm.flow import Flow
 from lbm.rates import Rates
+from lbm.rates_by_place import RatesByPlace
 from lbm.scales import FlowScales, Scales
 from lbm.simulation import Simulation
 
 __all__ = [
     "Body", "DivergenceError", "FixedBody", "Flow", "FlowScales", "FreeSlip", "Inlet", "InputError", "NoSlip",
-    "Outlet", "OutputError", "OutsideRangeWarning", "Periodic", "Rates", "Scales", "Simulation",
+    "Outlet", "OutputError", "OutsideRangeWarning", "Periodic", "Rates", "RatesByPlace", "Scales", "Simulation",
 ]  # fmt: skip

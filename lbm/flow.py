@@ -22,6 +22,7 @@ from lbm.fluid.lattice import Lattice
 from lbm.io import checkpoint
 from lbm.io.interrupt import interrupts_deferred
 from lbm.rates import Rates
+from lbm.rates_by_place import RatesByPlace
 
 __all__ = ["Flow", "Force"]
 
@@ -36,7 +37,7 @@ class Flow:
     Parameters
     ----------
     shape : (nx, ny, nz), cells along x, y, z, at least 4 each.
-    rates : relaxation rates, which set the viscosity; see :class:`lbm.rates.Rates`.
+    rates : relaxation rates, which set the viscosity; see :class:`lbm.Rates` and :class:`lbm.RatesByPlace`.
     faces : boundary by face ("x-", "x+", ...) or axis ("x", "y", "z"); see :mod:`lbm.faces`.
     force : force density, 3 components, or a function of time giving them; may be exchanged as ``given_force``.
     dtype : float64 or float32.
@@ -49,7 +50,9 @@ class Flow:
 
     shape: tuple[int, int, int] = property(attrgetter("_shape"), doc="Cells along x, y, z.")
     dtype: np.dtype = property(attrgetter("_dtype"), doc="Precision of the populations.")
-    rates: Rates = property(attrgetter("_rates"), doc="Relaxation rates, fixed for the life of the flow.")
+    rates: Rates | RatesByPlace = property(
+        attrgetter("_rates"), doc="Relaxation rates, fixed for the life of the flow."
+    )
     faces: tuple[Face, ...] = property(attrgetter("_faces"), doc="Boundaries in the order x-, x+, y-, ..., z+.")
     steps: int = property(attrgetter("_steps"), doc="Steps made since the start of the flow: the time.")
     bodies: tuple[Body, ...] = property(attrgetter("_bodies"), doc="What :meth:`add` has put into the fluid.")
@@ -57,7 +60,7 @@ class Flow:
     def __init__(
         self,
         shape: tuple[int, int, int],
-        rates: Rates,
+        rates: Rates | RatesByPlace,
         *,
         faces: dict[str, Face | str] | None = None,
         force: Force | None = None,
@@ -65,9 +68,9 @@ class Flow:
     ):
         self._dtype = arguments.precision(dtype)
         self._shape = arguments.box(shape, self._dtype.itemsize)
-        if not isinstance(rates, Rates):
+        if not isinstance(rates, Rates | RatesByPlace):
             hint = "; call the preset, as Rates.bgk(viscosity)" if callable(rates) else ""
-            raise InputError(f"rates = {arguments.shown(rates)}: give lbm.Rates{hint}")
+            raise InputError(f"rates = {arguments.shown(rates)}: give lbm.Rates or lbm.RatesByPlace{hint}")
         self._rates, self._faces = rates, resolve(faces)
         self.given_force = force
         try:

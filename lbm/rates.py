@@ -89,6 +89,17 @@ class Rates:
         return cls(nu=even, e=even, eps=even, q=odd, pi=even, m=odd)
 
     @classmethod
+    def quiet(cls, viscosity: float) -> Rates:
+        """Rates for flow away from walls, stable and quiet where :meth:`two_relaxation_times` are not.
+
+        s_q by the magic parameter 3/16; s_e 1.19 and s_eps = s_pi 1.4 of d'Humieres et al. (2002); s_m 2/3, that
+        is L_m = 1/s_m - 1/2 = 1: of little weight between 0.3 and 1.98 (benchmarks/README.md). Beside a wall
+        L_m moves the wall; there :class:`lbm.RatesByPlace` has others.
+        """
+        base = cls.two_relaxation_times(viscosity)
+        return cls(nu=base.nu, e=1.19, eps=1.4, q=base.q, pi=1.4, m=2 / 3)
+
+    @classmethod
     def bulk(cls, viscosity: float, bulk_viscosity: float, magic: float = 3 / 16) -> Rates:
         """:meth:`two_relaxation_times` with the bulk viscosity chosen separately (d'Humieres et al. 2002)."""
         base = cls.two_relaxation_times(viscosity, magic)
@@ -110,6 +121,10 @@ class Rates:
     def bulk_viscosity(self) -> float:
         """Kinematic bulk viscosity in lattice units."""
         return (1 / self.e - 0.5) * 2 / 9
+
+    def layers(self) -> tuple[Rates, ...]:
+        """Rates by layer of cells from a wall, of which this is the only one; see :class:`lbm.RatesByPlace`."""
+        return (self,)
 
     def diagonal(self) -> np.ndarray:
         """Rates in the order of :data:`lbm.fluid.moments.NAMES`; conserved moments have rate 0."""
@@ -137,5 +152,6 @@ PRESETS = {
     "two-relaxation-times": Rates.two_relaxation_times,
     "dhumieres2002": Rates.dhumieres2002,
     "bgk": Rates.bgk,
+    "quiet": Rates.quiet,
 }
-"""Presets that follow from the viscosity alone, by name."""
+"""Presets that are the same everywhere and follow from the viscosity alone, by name."""

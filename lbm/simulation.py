@@ -11,14 +11,16 @@ import numpy as np
 
 from lbm import arguments
 from lbm.faces import passes
-from lbm.faces.records import Face
+from lbm.faces.records import Face, NoSlip
 from lbm.flow import Flow, Force
 from lbm.fluid import cache, kernels
+from lbm.fluid.places import places
 from lbm.fluid.stencil import Q
 from lbm.io.interrupt import interrupts_deferred
 from lbm.io.progress import Progress
 from lbm.observers import DivergenceGuard, Observer, checked
 from lbm.rates import Rates
+from lbm.rates_by_place import RatesByPlace
 
 __all__ = ["Simulation"]
 
@@ -32,7 +34,8 @@ class Simulation(Flow):
     Parameters
     ----------
     shape : cells along x, y, z, at least 4 each.
-    rates : relaxation rates, which set the viscosity; see :class:`lbm.rates.Rates`.
+    rates : relaxation rates, which set the viscosity: the same everywhere (:class:`lbm.Rates`) or other ones near
+        no-slip walls (:class:`lbm.RatesByPlace`).
     faces : boundary by face ("x-", "x+", ...) or axis ("x", "y", "z"): one of "periodic" (default),
         "no-slip", "free-slip", "outlet", or a record of :mod:`lbm.faces`.
     force : force density, 3 components, or a function of time giving them (called at whole steps).
@@ -59,7 +62,7 @@ class Simulation(Flow):
     def __init__(
         self,
         shape: tuple[int, int, int],
-        rates: Rates,
+        rates: Rates | RatesByPlace,
         *,
         faces: dict[str, Face | str] | None = None,
         force: Force | None = None,
@@ -69,7 +72,8 @@ class Simulation(Flow):
         super().__init__(shape, rates, faces=faces, force=force, dtype=dtype)
         self.threads = arguments.threads(threads, math.prod(self.shape))
         self._face_passes = passes.passes(self.faces, self.lattice.grid)
-        self._scaled_rates = rates.scaled(self.dtype)
+        walls = [isinstance(face, NoSlip) for face in self.faces]
+        self._places = places(rates.layers(), walls, self.shape, self.dtype)
         self._planes = np.arange(self.shape[2])
 
     def compile(self) -> float:
@@ -78,7 +82,7 @@ class Simulation(Flow):
         lattice, force = self.lattice, self._force_at(0.0)
         self._sweep(self._planes[:0], force)
         kernels.sweep_two(
-            lattice.populations, lattice.grid, lattice.rows, self._scaled_rates, self._typed(force),
+            lattice.populations, lattice.grid, lattice.rows, self._places, self._typed(force),
             1, 1, 0, np.zeros(0, np.bool_),
         )  # fmt: skip
         return time.perf_counter() - start
@@ -203,7 +207,7 @@ class Simulation(Flow):
             for body in self.bodies:
                 body(lattice, self.steps, force)
             kernels.sweep_two(
-                lattice.populations, lattice.grid, lattice.rows, self._scaled_rates, self._typed(force),
+                lattice.populations, lattice.grid, lattice.rows, self._places, self._typed(force),
                 blocks, tile, self.shape[2], made,
             )  # fmt: skip
             lattice.parity = 0
@@ -215,6 +219,6 @@ class Simulation(Flow):
         """Collide and stream ``planes``."""
         lattice = self.lattice
         kernels.sweep(
-            lattice.populations, lattice.grid, lattice.rows, lattice.parity, self._scaled_rates,
+            lattice.populations, lattice.grid, lattice.rows, lattice.parity, self._places,
             self._typed(force), planes,
         )  # fmt: skip

@@ -9,6 +9,7 @@ from lbm.fluid.cache import kernel
 from lbm.fluid.collision import collide
 from lbm.fluid.lattice import give_back, lend, row_starts
 from lbm.fluid.memory import line_length, load_cell, prefetch_cell, store_cell
+from lbm.fluid.places import FACTORS, load_rates, row_rates
 
 _AHEAD = 6
 """How many cache lines ahead a row asks for its memory (benchmarks/README.md)."""
@@ -30,10 +31,26 @@ def _step_cell(populations, starts, x, rates, force):
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
+def _step_ends(populations, starts, first, last, nx, layer, along, force):
+    """Collide and stream the cells first to last - 1 of a row, each with rates of its own."""
+    line = line_length(populations)
+    own = np.int64(layer) * FACTORS * nx
+    whole = last - (last - first) % line
+    for first_x in range(first, whole, line):
+        prefetch_cell(populations, starts, first_x + _AHEAD * line)
+        for i in range(line):
+            x = first_x + i
+            _step_cell(populations, starts, x, load_rates(along, own, nx, x), force)
+    if whole < last:
+        prefetch_cell(populations, starts, whole + _AHEAD * line)
+    for x in range(whole, last):
+        _step_cell(populations, starts, x, load_rates(along, own, nx, x), force)
+
+
+@njit(error_model="numpy", fastmath={"contract"})
+def _step_rows(populations, grid, rows, parity, first, last, z, places, force):
     """Collide and stream rows first to last - 1 of plane z in place."""
     line = line_length(populations)
-    whole = grid.nx - grid.nx % line
     if first < last:
         lend(populations, grid, rows, parity, first, z)
     for y in range(first, last):
@@ -41,28 +58,30 @@ def _step_rows(populations, grid, rows, parity, first, last, z, rates, force):
             # A row ahead: a vector load right behind the store of one of its elements would stall.
             lend(populations, grid, rows, parity, y + 1, z)
         starts = row_starts(grid, rows, parity, y, z)
-        for first_x in range(0, whole, line):
+        layer = places.rows[z, y]
+        rates = row_rates(places, layer)
+        if places.first > 0:
+            _step_ends(populations, starts, 0, places.first, grid.nx, layer, places.along, force)
+        for first_x in range(places.first, places.last, line):
             # What lies beyond the end of the row is the next row, so asking past the end is of use.
             prefetch_cell(populations, starts, first_x + _AHEAD * line)
             # a constant length: compiled to vectors without a remainder
             for i in range(line):
                 _step_cell(populations, starts, first_x + i, rates, force)
-        if whole < grid.nx:
-            prefetch_cell(populations, starts, whole + _AHEAD * line)
-        for x in range(whole, grid.nx):
-            _step_cell(populations, starts, x, rates, force)
+        if places.last < grid.nx:
+            _step_ends(populations, starts, places.last, grid.nx, grid.nx, layer, places.along, force)
         give_back(populations, grid, rows, parity, y, z)
 
 
 @kernel
-def sweep(populations, grid, rows, parity, rates, force, planes):
+def sweep(populations, grid, rows, parity, places, force, planes):
     """One time step of the ``planes`` of these numbers (none to compile only)."""
     for n in prange(planes.shape[0]):
-        _step_rows(populations, grid, rows, parity, 0, grid.ny, planes[n], rates, force)
+        _step_rows(populations, grid, rows, parity, 0, grid.ny, planes[n], places, force)
 
 
 @kernel
-def sweep_two(populations, grid, rows, rates, force, blocks, tile, planes, made):
+def sweep_two(populations, grid, rows, places, force, blocks, tile, planes, made):
     """Two time steps from parity 0 in one pass over memory; in planes that are ``made`` the even one is behind.
 
     The odd step of row (y, z) needs the even step of the rows around it. Each of ``blocks`` slabs of planes
@@ -81,15 +100,15 @@ def sweep_two(populations, grid, rows, rates, force, blocks, tile, planes, made)
             last = min(ny, first + tile)
             for z in range(low, high):
                 if not made[z]:
-                    _step_rows(populations, grid, rows, 0, first, last, z, rates, force)
+                    _step_rows(populations, grid, rows, 0, first, last, z, places, force)
                 if z - 1 > low:
-                    _step_rows(populations, grid, rows, 1, max(1, first - 1), last - 1, z - 1, rates, force)
+                    _step_rows(populations, grid, rows, 1, max(1, first - 1), last - 1, z - 1, places, force)
         for z in range(low + 1, high - 1):
-            _step_rows(populations, grid, rows, 1, ny - 1, ny, z, rates, force)
-            _step_rows(populations, grid, rows, 1, 0, 1, z, rates, force)
+            _step_rows(populations, grid, rows, 1, ny - 1, ny, z, places, force)
+            _step_rows(populations, grid, rows, 1, 0, 1, z, places, force)
     for half in prange(2 * blocks):
         block = np.int64(half)
         low, high = planes * (block // 2) // blocks, planes * (block // 2 + 1) // blocks
         if low < high - 1 or (low < high and block % 2 == 0):
             z = low if block % 2 == 0 else high - 1
-            _step_rows(populations, grid, rows, 1, 0, ny, z, rates, force)
+            _step_rows(populations, grid, rows, 1, 0, ny, z, places, force)

@@ -16,10 +16,16 @@ from lbm.fluid.stencil import Q
 
 
 def _alias_scopes(module):
-    """One (scope, all other scopes) pair of metadata lists a population."""
+    """One (scope, all other scopes) pair of metadata lists a population, and one for the rates, the last."""
     domain = module.add_metadata([ir.MetaDataString(module, "lbm populations")])
-    scopes = [module.add_metadata([ir.MetaDataString(module, f"population {k}"), domain]) for k in range(Q)]
+    names = [*(f"population {k}" for k in range(Q)), "rates"]
+    scopes = [module.add_metadata([ir.MetaDataString(module, name), domain]) for name in names]
     return [(module.add_metadata([s]), module.add_metadata([t for t in scopes if t is not s])) for s in scopes]
+
+
+def rates_scopes(module):
+    """The pair of metadata lists of what no store to a population changes."""
+    return _alias_scopes(module)[Q]
 
 
 def _addresses(context, builder, array_type, array, starts, x):
@@ -38,7 +44,7 @@ def load_cell(typingctx, array, starts, x):
     def codegen(context, builder, signature, args):
         values = []
         addresses = _addresses(context, builder, signature.args[0], *args)
-        for address, (scope, others) in zip(addresses, _alias_scopes(builder.module), strict=True):
+        for address, (scope, others) in zip(addresses, _alias_scopes(builder.module)[:Q], strict=True):
             value = builder.load(address)
             value.set_metadata("alias.scope", scope)
             value.set_metadata("noalias", others)
@@ -56,7 +62,7 @@ def store_cell(typingctx, array, starts, x, values):
         array, starts, x, values = args
         addresses = _addresses(context, builder, signature.args[0], array, starts, x)
         new = cgutils.unpack_tuple(builder, values, Q)
-        for address, value, (scope, others) in zip(addresses, new, _alias_scopes(builder.module), strict=True):
+        for address, value, (scope, others) in zip(addresses, new, _alias_scopes(builder.module)[:Q], strict=True):
             instruction = builder.store(value, address)
             instruction.set_metadata("alias.scope", scope)
             instruction.set_metadata("noalias", others)

@@ -65,7 +65,7 @@ class Numerics(Record):
     sides: Literal["periodic", "no-slip", "free-slip"] = "periodic"
     top: Literal["no-slip", "free-slip", "outlet"] = "no-slip"
     precision: Literal["float32", "float64"] = "float32"
-    rates: Literal["two-relaxation-times", "dhumieres2002"] = "two-relaxation-times"
+    rates: Literal["two-relaxation-times", "dhumieres2002", "quiet", "quiet-by-place"] = "two-relaxation-times"
     interpolation: Literal["linear", "central-linear"] = "linear"
     symmetry: Literal["none", "quarter"] = "none"
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import lbm
 from lbm.arguments import SPEED_OF_SOUND
-from lbm.rates import PRESETS
+from lbm.rates_by_place import PRESETS
 from lbm.scales import FlowScales
 from lbm.spheres import (
     SETTLED,
@@ -41,7 +41,7 @@ class Setup:
 
     flow: FlowScales
     shape: tuple[int, int, int]
-    rates: lbm.Rates
+    rates: lbm.Rates | lbm.RatesByPlace
     faces: dict[str, str]
     precision: str
     interpolation: str
