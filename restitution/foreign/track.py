@@ -92,14 +92,15 @@ def _named(table: ForeignTable, name: str) -> str:
     return own
 
 
-def read_track(table: ForeignTable, settings: Settings, conditions: Conditions) -> ForeignTrack:
+def read_track(table: ForeignTable, settings: Settings, conditions: Conditions | None) -> ForeignTrack:
     """The track in a table.
 
     Parameters
     ----------
     table : the file.
     settings : what the numbers mean, where the file does not say it.
-    conditions : the sphere's diameter, for positions of its centre and units of it.
+    conditions : the sphere's diameter, for positions of its centre and units of it; where it is not known, heights
+        of the centre stay such.
 
     Raises
     ------
@@ -122,7 +123,8 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions) 
     scale = {"time_s": time_unit, COLUMNS[columns.quantity]: unit}
     frames = read_table(kept.text(), datasets.schema(_SCHEMAS[columns.quantity]), names, scale)
     level = _gap_from(frames, settings, conditions, unit, columns.quantity, table.file)
-    return ForeignTrack(frames, _in_words(table, settings, columns, level), notes, unit)
+    sized = conditions is not None
+    return ForeignTrack(frames, _in_words(table, settings, columns, level, sized), notes, unit)
 
 
 def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Settings:
@@ -197,7 +199,12 @@ def _number(cell: str) -> float:
 
 
 def _gap_from(
-    frames: pd.DataFrame, settings: Settings, conditions: Conditions, unit: float, quantity: Quantity, file: str
+    frames: pd.DataFrame,
+    settings: Settings,
+    conditions: Conditions | None,
+    unit: float,
+    quantity: Quantity,
+    file: str,
 ) -> float | None:
     """Turn positions into gaps and velocities away from the wall; returns the level at rest where asked for."""
     name = COLUMNS[quantity]
@@ -217,12 +224,12 @@ def _gap_from(
     wall = settings.wall or 0.0
     if sign < 0 or wall:
         frames[name] = sign * (frames[name] - wall * unit)
-    if settings.point == "centre":
+    if settings.point == "centre" and conditions is not None:
         frames[name] -= conditions.sphere.radius
     return None
 
 
-def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: float | None) -> str:
+def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: float | None, sized: bool) -> str:
     """How the numbers were taken, in one line; empty where they stand as the project's own tables have them."""
     if (
         columns.time == "time_s"
@@ -245,7 +252,8 @@ def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: 
             parts.append(f"wall where it comes to rest, at {level:.6g}")
         else:
             parts.append(f"wall at {settings.wall or 0:g}")
-            parts.append("of the centre, less d/2" if settings.point == "centre" else "of the lowest point")
+            centre = "of the centre, less d/2" if sized else "of the centre, d not known"
+            parts.append(centre if settings.point == "centre" else "of the lowest point")
     if table.program is not None:
         parts.insert(0, table.program.name)
     if table.form and table.form != (table.program.name if table.program else ""):

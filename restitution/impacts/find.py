@@ -26,11 +26,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Impacts:
-    """Rows of the impact table, the noise that was used, and what could not be evaluated and why."""
+    """Rows of the impact table, the noise that was used, and what could not be evaluated and why.
+
+    ``contacts`` are those that were evaluated by ``measure``, in order: impact 1, 2, ...
+    """
 
     rows: list[dict] = field(repr=False)
     sigma: float
     notes: list[str]
+    contacts: list[Contact] = field(repr=False)
+    measure: SpeedMeasure = field(repr=False)
 
     def table(self) -> pd.DataFrame:
         """The rows as a table with the columns of the impact schema."""
@@ -87,7 +92,8 @@ def find_impacts(
         track, conditions, Speed(speed), window_frames, h_film * conditions.sphere.diameter, level
     )
     rows, notes = [], _remarks(track, conditions, found)
-    for i, contact in enumerate(_with_quoted_first(track, conditions, found, notes)):
+    touches = _with_quoted_first(track, conditions, found, notes)
+    for i, contact in enumerate(touches):
         try:
             speeds = measure(contact, np.random.default_rng([seed, i]))
         except UnresolvedError as reason:
@@ -97,7 +103,7 @@ def find_impacts(
             notes.append(f"impact {i + 1}, near t = {when} s: {reason}")
             continue
         rows.append({"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, stokes))
-    return Impacts(rows, track.sigma, notes)
+    return Impacts(rows, track.sigma, notes, touches, measure)
 
 
 def _remarks(track: Track, conditions: Conditions, found: Contacts) -> list[str]:
