@@ -103,7 +103,10 @@ def test_a_picture_with_conditions_or_without_and_where_no_impact_is_found(look,
     assert str(tmp_path / "there" / "index.html").endswith(out.split()[-1])
 
 
-@pytest.mark.parametrize(("name", "begins"), [("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.html", b"<!DOCTYPE")])
+FIRST_BYTES = [("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.html", b"<!DOCTYPE")]
+
+
+@pytest.mark.parametrize(("name", "begins"), FIRST_BYTES)
 def test_one_file_by_its_ending(look, tmp_path, name, begins):
     assert look("up.csv", "--out", name)[0] == 0
     assert (tmp_path / name).read_bytes().startswith(begins)
