@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from restitution.commands import options, tracked
+from restitution.commands import flights, options, tracked
 from restitution.commands.console import show, show_rows
 
 if TYPE_CHECKING:
@@ -27,9 +27,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="TRACK",
         help="a file of time and gap (surface to wall) or velocity (positive away from the wall, measured as "
         "such: of positions give the gaps), as a tracking program, spreadsheet or solver writes it, or the "
-        "name of a shipped record",
+        "name of a shipped record; or a table of bounces and their times, or apexes, alone",
     )
     tracked.add_options(parser)
+    flights.add_options(parser)
     parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
     parser.add_argument(
         "--template", metavar="FOLDER", help="write track.csv, conditions.toml, settings.toml to start from"
@@ -49,6 +50,9 @@ def run(args: argparse.Namespace) -> None:
     if not args.track:
         raise InputError("name a track: a CSV file or a shipped record ('restitution data list')")
     options.check_output("--out", args.out, filter(None, (args.track, args.conditions, args.settings)))
+    if (bounces := flights.read(args)) is not None:
+        flights.run(args, bounces)
+        return
     read = tracked.read(args)
     impacts = read.impacts(args)
     table = impacts.table()

@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from restitution.commands import options, tracked
+from restitution.commands import flights, options, tracked
 from restitution.commands.console import show
 from restitution.commands.impacts import show_impacts
 
@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> None:
     """Say how the track was read, write its picture, and open it."""
     import tempfile
 
-    from restitution.errors import InputError
+    from restitution.errors import Defect, InputError
     from restitution.files import check_folder, write_folder, write_whole
     from restitution.report.look import Told, pages, view_of
 
@@ -45,6 +45,9 @@ def run(args: argparse.Namespace) -> None:
         options.check_output("--out", args.out, filter(None, (args.track, args.conditions, args.settings)))
     elif args.out:
         check_folder(args.out)
+    if flights.read(args) is not None:
+        rule = "has bounces alone, no track to look at: restitution impacts takes it"
+        raise InputError(Defect(rule, file=args.track))
     read = tracked.read(args, without_conditions=True)
     impacts, notes = None, [*read.notes]
     if read.conditions is None:
