@@ -66,7 +66,7 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
     from restitution.datasets.checks import fitting_schemas
     from restitution.errors import Defect, InputError
     from restitution.foreign import read_foreign, read_track
-    from restitution.foreign.track import columns_of
+    from restitution.foreign.track import is_track
 
     for name, bad in (("--frames", args.frames < 2), ("--film", not 0 < args.film < 10)):
         if bad:
@@ -88,7 +88,7 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
     settings = options.settings_of(args)
     table = read_foreign(args.track, settings.decimal)
     kinds = fitting_schemas(table.header, {})
-    if columns_of(table, settings) is None and len(kinds) == 1:
+    if not is_track(table, settings) and len(kinds) == 1:
         rule = f"is a {kinds[0].name} table, not a track of time and gap or velocity"
         raise InputError(Defect(rule, file=args.track))
     conditions = read_conditions(args.conditions) if args.conditions else None
