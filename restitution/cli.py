@@ -17,6 +17,7 @@ from restitution.commands import (
     fit,
     impacts,
     laws,
+    look,
     predict,
     report,
     simulate,
@@ -32,7 +33,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"restitution {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for module in (data, laws, impacts, fit, compare, predict, design, export, simulate, bounce, report):
+    for module in (data, laws, impacts, look, fit, compare, predict, design, export, simulate, bounce, report):
         module.add_parser(commands)
     return parser
 

@@ -6,16 +6,13 @@ import argparse
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from restitution.commands import options
+from restitution.commands import flights, options, tracked
 from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from restitution.conditions import Conditions
-    from restitution.tracks import Track
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -31,27 +28,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="TRACK",
         help="a file of time and gap (surface to wall) or velocity (positive away from the wall, measured as "
         "such: of positions give the gaps), as a tracking program, spreadsheet or solver writes it, or the "
-        "name of a shipped record",
+        "name of a shipped record; or a table of bounces and their times, or apexes, alone",
     )
-    parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML (see --template)")
-    parser.add_argument(
-        "--speed",
-        choices=("far", "contact", "window"),
-        default="far",
-        help="which speed of approach and rebound: of the motion outside the film (default), extrapolated to "
-        "contact from all frames, or the slope over a window of frames",
-    )
-    parser.add_argument("--frames", type=int, default=2, metavar="N", help="frames of the window on each side (2)")
-    parser.add_argument("--film", type=float, default=0.1, metavar="H", help="film thickness in diameters (0.1)")
-    parser.add_argument(
-        "--stokes", default="st", metavar="CONVENTION", help="st (default), st_star, st_d, st_18, st_b"
-    )
-    parser.add_argument(
-        "--sigma", type=float, metavar="S", help="noise of the track in its unit (default: estimated)"
-    )
-    options.add_columns(parser)
-    options.add_track(parser)
+    tracked.add_options(parser)
     options.add_strict(parser)
+    flights.add_options(parser)
     parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
     parser.add_argument(
         "--template", metavar="FOLDER", help="write track.csv, conditions.toml, settings.toml to start from"
@@ -62,9 +43,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> None:
     """Print the impacts of a track, and write them where asked."""
     from restitution.doubts import refuse
-    from restitution.errors import Defect, InputError
+    from restitution.errors import InputError
     from restitution.files import write_whole
-    from restitution.impacts.find import find_impacts
     from restitution.tables.writing import table_text
 
     if args.template:
@@ -72,16 +52,12 @@ def run(args: argparse.Namespace) -> None:
         return
     if not args.track:
         raise InputError("name a track: a CSV file or a shipped record ('restitution data list')")
-    for name, bad in (("--frames", args.frames < 2), ("--film", not 0 < args.film < 10)):
-        if bad:
-            rule = "must be at least 2" if name == "--frames" else "must be between 0 and 10 diameters"
-            raise InputError(Defect(rule, field=name, value=str(getattr(args, name.removeprefix("--")))))
-    if args.out is not None:
-        _check_output(args)
-    track, conditions, kind, said = _read(args)
-    impacts = find_impacts(
-        track, conditions, args.speed, args.stokes, Path(args.track).stem, kind, args.frames, args.film
-    )
+    options.check_output("--out", args.out, filter(None, (args.track, args.conditions, args.settings)))
+    if (bounces := flights.read(args)) is not None:
+        flights.run(args, bounces)
+        return
+    read = tracked.read(args)
+    impacts = read.impacts(args)
     if args.strict:
         refuse(replace(doubt, where=args.track) for doubt in impacts.doubts)
     table = impacts.table()
@@ -89,63 +65,12 @@ def run(args: argparse.Namespace) -> None:
         names = [f"doubt: {doubt.name}" for doubt in impacts.doubts]
         notes = table.note.map(lambda note: "; ".join(filter(None, [note, *names])))
         write_whole(args.out, table_text(table.assign(time_s=_times(table), note=notes)))
-    if said.reading:
-        show(f"read: {said.reading}")
-    _show(table, impacts.sigma, "m" if track.quantity == "gap" else "m/s")
-    for note in (*said.notes, *impacts.notes):
+    if read.reading:
+        show(f"read: {read.reading}")
+    show_impacts(table, impacts.sigma, "m" if read.track.quantity == "gap" else "m/s")
+    for note in (*read.notes, *impacts.notes):
         show(f"note: {note}")
     show_doubts(impacts.doubts)
-
-
-def _check_output(args: argparse.Namespace) -> None:
-    """Refuse an output that would replace one of the inputs, or that names no file."""
-    from restitution.errors import Defect, InputError
-
-    if not args.out:
-        raise InputError(Defect("names no file", field="--out"))
-    for given in (args.track, args.conditions, args.settings):
-        if given and Path(given).exists() and Path(args.out).resolve() == Path(given).resolve():
-            raise InputError(Defect("would replace an input", file=args.out, field="--out"))
-
-
-class _Said(NamedTuple):
-    """How the file was read, in one line, and notes on it."""
-
-    reading: str = ""
-    notes: tuple[str, ...] = ()
-
-
-def _read(args: argparse.Namespace) -> tuple[Track, Conditions, str, _Said]:
-    """The track, its conditions, its kind, and how it was read."""
-    from restitution import datasets
-    from restitution.conditions import read_conditions
-    from restitution.datasets.checks import fitting_schemas
-    from restitution.errors import Defect, InputError
-    from restitution.foreign import read_foreign, read_track
-    from restitution.foreign.track import columns_of
-
-    if args.sigma is not None and not 0 < args.sigma < math.inf:
-        raise InputError(Defect("must be positive and finite", field="--sigma", value=f"{args.sigma:g}"))
-    if not Path(args.track).exists():
-        if args.track not in datasets.names():
-            raise InputError(Defect("does not exist, and no shipped record has this name", file=args.track))
-        resource = datasets.resource(args.track)
-        conditions = read_conditions(args.conditions) if args.conditions else resource.conditions
-        return datasets.load_track(args.track, args.sigma), conditions, resource.kind, _Said()
-    if not args.conditions:
-        raise InputError(
-            f"{args.track}: fluid and sphere are needed: --conditions FILE (--template writes an example)"
-        )
-    options.check_track_columns(args.column)
-    settings = options.settings_of(args)
-    table = read_foreign(args.track, settings.decimal)
-    kinds = fitting_schemas(table.header, {})
-    if columns_of(table, settings) is None and len(kinds) == 1:
-        rule = f"is a {kinds[0].name} table, not a track of time and gap or velocity"
-        raise InputError(Defect(rule, file=args.track))
-    conditions = read_conditions(args.conditions)
-    found = read_track(table, settings, conditions)
-    return found.track(args.sigma), conditions, "measured", _Said(found.reading, found.notes)
 
 
 _LATE = 1e2
@@ -158,7 +83,7 @@ def _times(table: pd.DataFrame) -> pd.Series:
     return table["time_s"].map("{:.6f}".format) if late else table["time_s"]
 
 
-def _show(table: pd.DataFrame, sigma: float, unit: str) -> None:
+def show_impacts(table: pd.DataFrame, sigma: float, unit: str) -> None:
     """Print the impacts, one line each."""
     if table.empty:
         show(f"no impact is resolved (noise {sigma:.2g} {unit})")

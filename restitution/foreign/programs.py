@@ -75,7 +75,21 @@ LAMMPS = Program("LAMMPS", lambda names: False, time="timestep", particle="id", 
 OPENFOAM = Program("OpenFOAM", lambda names: False, time="time", units={"time": "s"})
 _BY_NAMES = (TRACKMATE, TRACKPY, DEEPLABCUT, KINOVEA)
 
-TIMES = ("time_s", "time", "t", "t_s", "time (s)", "t/t0", "t_star", "frame", "timestep", "step", "seconds")
+TIMES = (
+    "time_s",
+    "time",
+    "t",
+    "t_s",
+    "time (s)",
+    "t/t0",
+    "t_star",
+    "frame",
+    "timestep",
+    "step",
+    "seconds",
+    "slice",
+    "slice n°",
+)
 """Names by which a column is guessed to be the time, in a message that says how to name it."""
 POSITIONS = ("gap_m", "gap", "gap/d", "gap_over_d", "y", "z", "height", "h", "pos_y", "pos_z", "position")
 PARTICLES = (

@@ -8,6 +8,7 @@ rows of an image do), L and L_t the units of length and time. A velocity is s v 
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -70,14 +71,16 @@ class Units:
     symbols: dict[str, Quantity]
 
     @classmethod
-    def of(cls, settings: Settings, conditions: Conditions) -> Units:
-        """The diameter ``d`` and radius ``r``, gravity ``g``, ``frame`` and ``px``."""
-        d = conditions.sphere.diameter
-        symbols = {
-            "d": Quantity(d, LENGTH),
-            "r": Quantity(d / 2, LENGTH),
-            "g": Quantity(conditions.gravity, quantity("m/s2").dimension),
-        }
+    def of(cls, settings: Settings, conditions: Conditions | None) -> Units:
+        """The diameter ``d`` and radius ``r``, gravity ``g``, where these are known, ``frame`` and ``px``."""
+        symbols = {}
+        if conditions is not None:
+            d = conditions.sphere.diameter
+            symbols = {
+                "d": Quantity(d, LENGTH),
+                "r": Quantity(d / 2, LENGTH),
+                "g": Quantity(conditions.gravity, quantity("m/s2").dimension),
+            }
         if settings.frames_per_second is not None:
             frame = Quantity(1 / settings.frames_per_second, TIME)
             symbols |= dict.fromkeys(("frame", "frames"), frame)
@@ -119,12 +122,18 @@ class Units:
             return quantity(unit, self.symbols)
         except UnitError as error:
             for name, rule in _ASKED.items():
-                if name in unit and name not in self.symbols:
+                if name not in self.symbols and re.search(rf"(?<![^\W\d]){name}(?![^\W\d])", unit):
                     raise InputError(Defect(rule, field=option, value=unit)) from None
             raise InputError(Defect(str(error), field=option, value=unit)) from None
 
 
-_ASKED = {"frame": "--fps says how many frames a second there are", "px": "--pixel says how long one is"}
+_ASKED = {
+    "frame": "--fps says how many frames a second there are",
+    "frames": "--fps says how many frames a second there are",
+    "px": "--pixel says how long one is",
+    "d": "--conditions says how large the sphere is",
+    "r": "--conditions says how large the sphere is",
+}
 """Symbols that need another setting."""
 
 TEMPLATE = """\

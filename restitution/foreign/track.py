@@ -55,6 +55,19 @@ class ForeignTrack:
 
 def columns_of(table: ForeignTable, settings: Settings) -> Columns | None:
     """The columns of a track, by the settings, the project's own names, or the program's; None if it has none."""
+    sought = _sought(table, settings)
+    if sought is None:
+        return None
+    return replace(sought, time=_named(table, sought.time), value=_named(table, sought.value))
+
+
+def is_track(table: ForeignTable, settings: Settings) -> bool:
+    """Whether a table is a track: it has the time, and a position or a velocity, perhaps of several particles."""
+    return _sought(table, settings) is not None
+
+
+def _sought(table: ForeignTable, settings: Settings) -> Columns | None:
+    """What the columns of a track would be called."""
     program = table.program
     time = settings.time or _own(table, "time_s") or _clock(table) or (program.time if program else None)
     if time is None:
@@ -69,7 +82,7 @@ def columns_of(table: ForeignTable, settings: Settings) -> Columns | None:
     value, quantity = (velocity, "velocity") if velocity else (position, "gap")
     if value is None:
         return None
-    return Columns(_named(table, time), _named(table, value), quantity)  # type: ignore[arg-type]
+    return Columns(time, value, quantity)  # type: ignore[arg-type]
 
 
 def _clock(table: ForeignTable) -> str | None:
@@ -92,20 +105,21 @@ def _named(table: ForeignTable, name: str) -> str:
     return own
 
 
-def read_track(table: ForeignTable, settings: Settings, conditions: Conditions) -> ForeignTrack:
+def read_track(table: ForeignTable, settings: Settings, conditions: Conditions | None) -> ForeignTrack:
     """The track in a table.
 
     Parameters
     ----------
     table : the file.
     settings : what the numbers mean, where the file does not say it.
-    conditions : the sphere's diameter, for positions of its centre and units of it.
+    conditions : the sphere's diameter, for positions of its centre and units of it; where it is not known, heights
+        of the centre stay such.
 
     Raises
     ------
     InputError : naming every option that is needed, or what is wrong with the rows.
     """
-    table = table.of_particle(None if settings.particle is None else str(settings.particle))
+    table = _of_particle(table, settings)
     columns = columns_of(table, settings)
     if columns is None:
         raise InputError(what_is_needed(table))
@@ -122,7 +136,28 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions) 
     scale = {"time_s": time_unit, COLUMNS[columns.quantity]: unit}
     frames = read_table(kept.text(), datasets.schema(_SCHEMAS[columns.quantity]), names, scale)
     level = _gap_from(frames, settings, conditions, unit, columns.quantity, table.file)
-    return ForeignTrack(frames, _in_words(table, settings, columns, level), notes, unit)
+    sized = conditions is not None
+    return ForeignTrack(frames, _in_words(table, settings, columns, level, sized), notes, unit)
+
+
+def _of_particle(table: ForeignTable, settings: Settings) -> ForeignTable:
+    """The rows of the particle; where it is not clear which, raises with all else that is needed too."""
+    particle = None if settings.particle is None else str(settings.particle)
+    try:
+        return table.of_particle(particle)
+    except InputError as several:
+        if particle is not None:
+            raise
+        one = table.of_particle(next(iter(table.particles())))
+        try:
+            columns = columns_of(one, settings)
+            if columns is None:
+                raise InputError(what_is_needed(one))
+            _completed(one, settings, columns)
+        except InputError as more:
+            also = "; ".join(defect.rule for defect in more.defects)
+            raise InputError(replace(several.defects[0], rule=f"{several.defects[0].rule}; {also}")) from None
+        raise
 
 
 def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Settings:
@@ -152,7 +187,10 @@ def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Set
         needed.append(f"--pixel LENGTH of one (0.125mm), for {columns.value} is in pixels")
     if columns.quantity == "gap" and program is not None:
         if completed.wall is None and program.down:
-            needed.append(f"--wall X: {columns.value} of the wall, or --wall rest: where the sphere comes to rest")
+            whose = "" if completed.point else " and --point centre or lowest"
+            needed.append(
+                f"--wall X{whose}: {columns.value} of the wall, or --wall rest: where the sphere comes to rest"
+            )
         elif completed.point is None and completed.wall != "rest":
             needed.append(f"--point centre or lowest: whose {columns.value} it is")
     if needed:
@@ -197,7 +235,12 @@ def _number(cell: str) -> float:
 
 
 def _gap_from(
-    frames: pd.DataFrame, settings: Settings, conditions: Conditions, unit: float, quantity: Quantity, file: str
+    frames: pd.DataFrame,
+    settings: Settings,
+    conditions: Conditions | None,
+    unit: float,
+    quantity: Quantity,
+    file: str,
 ) -> float | None:
     """Turn positions into gaps and velocities away from the wall; returns the level at rest where asked for."""
     name = COLUMNS[quantity]
@@ -217,12 +260,12 @@ def _gap_from(
     wall = settings.wall or 0.0
     if sign < 0 or wall:
         frames[name] = sign * (frames[name] - wall * unit)
-    if settings.point == "centre":
+    if settings.point == "centre" and conditions is not None:
         frames[name] -= conditions.sphere.radius
     return None
 
 
-def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: float | None) -> str:
+def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: float | None, sized: bool) -> str:
     """How the numbers were taken, in one line; empty where they stand as the project's own tables have them."""
     if (
         columns.time == "time_s"
@@ -245,7 +288,8 @@ def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: 
             parts.append(f"wall where it comes to rest, at {level:.6g}")
         else:
             parts.append(f"wall at {settings.wall or 0:g}")
-            parts.append("of the centre, less d/2" if settings.point == "centre" else "of the lowest point")
+            centre = "of the centre, less d/2" if sized else "of the centre, d not known"
+            parts.append(centre if settings.point == "centre" else "of the lowest point")
     if table.program is not None:
         parts.insert(0, table.program.name)
     if table.form and table.form != (table.program.name if table.program else ""):

@@ -43,6 +43,16 @@ class Branch:
     coefficients: NDArray  # (fits, 6)
     roots: NDArray  # (fits, 6, 6), a square root of each covariance
     weights: NDArray  # (fits,), sum 1
+    reaches: NDArray  # (fits,), how far from the origin in s the window of each fit goes
+
+    def mean(self) -> NDArray:
+        """The mean coefficients of the mixture, shape (6,)."""
+        return self.weights @ self.coefficients
+
+    @property
+    def reach(self) -> float:
+        """How far from the origin in s the frames go that the fits are made to, by their weights."""
+        return float(self.weights @ self.reaches)
 
     def draw(self, size: int, rng: np.random.Generator) -> NDArray:
         """``size`` sets of coefficients, shape (size, 6), from the weighted mixture."""
@@ -163,14 +173,15 @@ def average(branch: Points, quantity: str, prior: Prior, rebound: bool) -> Branc
         return average(noisier, quantity, prior, rebound)
     aic = misfit + 2 * unknowns + 2 * (N - windows)
     weights = np.exp(-0.5 * (aic - aic.min()))
-    return Branch(np.concatenate(coefficients), np.concatenate(roots), weights / weights.sum())
+    reaches = np.maximum.accumulate(np.abs(branch.tau))[windows - 1]
+    return Branch(np.concatenate(coefficients), np.concatenate(roots), weights / weights.sum(), reaches)
 
 
 def line(branch: Points, quantity: str) -> Branch:
     """The straight line through all points by least squares: the mean slope, no average, no prior."""
     everything = np.array([len(branch.value)])
     coefficients, roots, _ = _fit(branch, everything, quantity, 1, _NO_PRIOR)
-    return Branch(coefficients, roots, np.ones(1))
+    return Branch(coefficients, roots, np.ones(1), np.max(np.abs(branch.tau), keepdims=True))
 
 
 def _fit(

@@ -27,12 +27,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Impacts:
-    """Rows of the impact table, the noise that was used, what could not be evaluated and why, what is doubtful."""
+    """Rows of the impact table, the noise that was used, what could not be evaluated and why, what is doubtful.
+
+    ``contacts`` are those that were evaluated by ``measure``, in order: impact 1, 2, ...; the track of ``measure``
+    is without its mistracked frames, which are ``lost`` of the track that was given.
+    """
 
     rows: list[dict] = field(repr=False)
     sigma: float
     notes: list[str]
-    doubts: list[Doubt] = field(default_factory=list)
+    doubts: list[Doubt]
+    contacts: list[Contact] = field(repr=False)
+    measure: SpeedMeasure = field(repr=False)
+    lost: NDArray = field(repr=False)
 
     def table(self) -> pd.DataFrame:
         """The rows as a table with the columns of the impact schema."""
@@ -90,7 +97,8 @@ def find_impacts(
     )
     rows, notes = [], _remarks(track, found)
     edge = h_film if Speed(speed) is Speed.FAR else None
-    for i, contact in enumerate(_with_quoted_first(track, conditions, found, notes)):
+    touches = _with_quoted_first(track, conditions, found, notes)
+    for i, contact in enumerate(touches):
         try:
             speeds = measure(contact, np.random.default_rng([seed, i]))
         except UnresolvedError as reason:
@@ -102,7 +110,8 @@ def find_impacts(
         rows.append(
             {"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, edge, stokes)
         )
-    return Impacts(rows, track.sigma, notes, [*clean.doubts, *of_track(track, found, conditions, record)])
+    doubts = [*clean.doubts, *of_track(track, found, conditions, record)]
+    return Impacts(rows, track.sigma, notes, doubts, touches, measure, clean.lost)
 
 
 def _remarks(track: Track, found: Contacts) -> list[str]:

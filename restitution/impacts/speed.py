@@ -59,6 +59,22 @@ class Speeds:
 
 
 @dataclass(frozen=True)
+class ReadBranch:
+    """What one branch was read as: the mean of its fits in (t - ``origin``), from ``begin`` to ``end`` in s."""
+
+    begin: float
+    end: float
+    origin: float
+    coefficients: NDArray
+    rebound: bool
+
+    def value(self, time: NDArray, quantity: str) -> NDArray:
+        """Gap in m or velocity in m/s at ``time``."""
+        c = self.coefficients if quantity == "gap" else polynomial.polyder(self.coefficients)
+        return polynomial.polyval(time - self.origin, c)
+
+
+@dataclass(frozen=True)
 class SpeedMeasure:
     """Measures the contacts of a track under one definition of speed.
 
@@ -95,6 +111,20 @@ class SpeedMeasure:
             between = self.track.time_s[after[0]] - self.track.time_s[before[0]]
             note = f"contact lasts {1e3 * between:.2g} ms: its {after[0] - before[0] - 1} frames left out"
         return Speeds(t_c, scale * v_in, scale * v_out, None, note)
+
+    def branches(self, contact: Contact) -> list[ReadBranch]:
+        """What approach and rebound were read as, where the sampling resolves them, without the open frame."""
+        found = []
+        for frames, rebound in ((list(contact.approach)[::-1], False), (list(contact.rebound), True)):
+            try:
+                use = self._usable(frames, "rebound" if rebound else "approach")
+            except UnresolvedError:
+                continue
+            origin = float(self.track.time_s[use[0]])
+            branch = self._fit(use, origin, rebound)
+            begin, end = (origin, origin + branch.reach) if rebound else (origin - branch.reach, origin)
+            found.append(ReadBranch(begin, end, origin, branch.mean(), rebound))
+        return found
 
     def _precedes(self, frame: int, before: list[int], after: list[int], rng: np.random.Generator) -> bool:
         """On which side of the contact the nearest frame lies, by the contact time of the others."""

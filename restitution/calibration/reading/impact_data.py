@@ -18,10 +18,10 @@ from restitution.calibration.reading.digitizer import PIXEL, bars_left_out, is_e
 from restitution.calibration.reading.impact_table import SCHEMA, from_table
 from restitution.calibration.reading.observations import Observations, join
 from restitution.calibration.reading.reading import Reading
-from restitution.calibration.reading.track_impacts import from_track, from_track_file, is_track
+from restitution.calibration.reading.track_impacts import from_track, from_track_file
 from restitution.errors import Defect, InputError
 from restitution.foreign.table import read_foreign
-from restitution.foreign.track import what_is_needed
+from restitution.foreign.track import is_track, what_is_needed
 from restitution.tables.reading import examine_table
 from restitution.tables.schema import read_schema
 
@@ -76,7 +76,7 @@ def _read_one(path: str, how: Reading) -> Observations:
     if is_export(path, how.track.decimal):
         return _from_export(path, how, _digest(path))
     foreign = read_foreign(path, how.track.decimal)
-    if is_track(foreign, how):
+    if is_track(foreign, how.settings):
         return from_track_file(foreign, how, _digest(path))
     _known_columns(dict.fromkeys(how.columns, "--column"))
     if not set(foreign.header) & {*read_schema(SCHEMA).columns, *how.columns.values()}:

@@ -12,17 +12,12 @@ from restitution.calibration.reading.reading import Reading
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.foreign.table import ForeignTable
-from restitution.foreign.track import columns_of, read_track
+from restitution.foreign.track import read_track
 from restitution.impacts.find import find_impacts
 from restitution.stokes import H_FILM, MEASURED_SPEEDS, film_edge
 from restitution.tables.reading import read_table
 from restitution.tables.schema import read_schema
 from restitution.tracks import Track
-
-
-def is_track(table: ForeignTable, how: Reading) -> bool:
-    """Whether a table is a track: it has the time, and either a position or a velocity."""
-    return columns_of(table, how.settings) is not None
 
 
 def from_track_file(table: ForeignTable, how: Reading, digest: str) -> Observations:

@@ -28,13 +28,13 @@ from restitution.bounce import Release, terminal_speed
 from restitution.bounce.agreement import release_reaching
 from restitution.calibration.estimation.parameters import Normal
 from restitution.calibration.reading.reading import Reading
-from restitution.calibration.reading.track_impacts import is_track, track_of
+from restitution.calibration.reading.track_impacts import track_of
 from restitution.calibration.trajectories.recording_checks import bounces, check
 from restitution.conditions import Conditions
 from restitution.doubts import Doubt, cleaned, of_track
 from restitution.errors import Defect, InputError
 from restitution.foreign.table import read_foreign
-from restitution.foreign.track import what_is_needed
+from restitution.foreign.track import is_track, what_is_needed
 from restitution.stokes import H_FILM
 from restitution.tracks import Track, begins_on_rebound, contacts
 
@@ -130,7 +130,7 @@ def read_recording(path: str, how: Reading) -> Recording:
     """One record: a file, or a shipped one by its name."""
     if Path(path).exists():
         table = read_foreign(path, how.track.decimal)
-        if not is_track(table, how):
+        if not is_track(table, how.settings):
             raise InputError(what_is_needed(table))
         track, conditions, notes = track_of(table, how)
         record = recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())

@@ -130,3 +130,19 @@ def test_misspelt_settings_are_named(folder, tmp_path):
     status, _, error = folder("impacts", "spots.csv", "--settings", "settings.toml")
     assert status == 2
     assert [("fps" in line, "point" in line) for line in error.splitlines()] == [(False, True), (True, False)]
+
+
+def test_several_body_parts_need_one_more_try_alone(folder, flight, tmp_path):
+    """What is asked for at first is all that is needed."""
+    _, gap, _ = flight
+    head = ["scorer" + ",net" * 6, "bodyparts,ball,ball,ball,mark,mark,mark", "coords" + ",x,y,likelihood" * 2]
+    rows = [f"{i},9,{512 - (y + RADIUS) / 1e-4:.7f},0.99,1,2,0.98" for i, y in enumerate(gap)]
+    (tmp_path / "pose.csv").write_text("\n".join(head + rows) + "\n")
+    status, _, error = folder("impacts", "pose.csv")
+    assert status == 2
+    assert all(option in error for option in ("--particle", "--fps", "--pixel", "--wall"))
+    options = ("--particle", "ball", *OPTIONS, "--point", "centre")
+    assert folder("impacts", "pose.csv", *options, "--out", "pose_impacts.csv")[0] == 0
+    assert folder("impacts", "own.csv", "--out", "own_impacts.csv")[0] == 0
+    own, pose = (pd.read_csv(tmp_path / name) for name in ("own_impacts.csv", "pose_impacts.csv"))
+    np.testing.assert_allclose(pose["e_eff"], own["e_eff"], rtol=1e-3)

@@ -1,0 +1,96 @@
+"""A track as ``impacts`` and ``look`` take it: their options, and how the file is read."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from restitution.commands import options
+
+if TYPE_CHECKING:
+    from restitution.conditions import Conditions
+    from restitution.impacts import Impacts
+    from restitution.tracks import Track
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What the numbers of a track mean, and how speeds are taken from it."""
+    parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML (see --template)")
+    parser.add_argument(
+        "--speed",
+        choices=("far", "contact", "window"),
+        default="far",
+        help="which speed of approach and rebound: of the motion outside the film (default), extrapolated to "
+        "contact from all frames, or the slope over a window of frames",
+    )
+    parser.add_argument("--frames", type=int, default=2, metavar="N", help="frames of the window on each side (2)")
+    parser.add_argument("--film", type=float, default=0.1, metavar="H", help="film thickness in diameters (0.1)")
+    parser.add_argument(
+        "--stokes", default="st", metavar="CONVENTION", help="st (default), st_star, st_d, st_18, st_b"
+    )
+    parser.add_argument(
+        "--sigma", type=float, metavar="S", help="noise of the track in its unit (default: estimated)"
+    )
+    options.add_columns(parser)
+    options.add_track(parser)
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """A track, its conditions (None: not stated), its kind, how it was read in one line, and notes on that."""
+
+    track: Track
+    conditions: Conditions | None
+    kind: str
+    reading: str = ""
+    notes: tuple[str, ...] = ()
+
+    def impacts(self, args: argparse.Namespace) -> Impacts:
+        """The impacts by the options; the conditions must be known."""
+        from restitution.impacts import find_impacts
+
+        name = Path(args.track).stem
+        return find_impacts(
+            self.track, self.conditions, args.speed, args.stokes, name, self.kind, args.frames, args.film
+        )
+
+
+def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
+    """The track that the options name; ``without_conditions``: they need not be stated."""
+    import math
+
+    from restitution import datasets
+    from restitution.conditions import read_conditions
+    from restitution.datasets.checks import fitting_schemas
+    from restitution.errors import Defect, InputError
+    from restitution.foreign import read_foreign, read_track
+    from restitution.foreign.track import is_track
+
+    for name, bad in (("--frames", args.frames < 2), ("--film", not 0 < args.film < 10)):
+        if bad:
+            rule = "must be at least 2" if name == "--frames" else "must be between 0 and 10 diameters"
+            raise InputError(Defect(rule, field=name, value=str(getattr(args, name.removeprefix("--")))))
+    if args.sigma is not None and not 0 < args.sigma < math.inf:
+        raise InputError(Defect("must be positive and finite", field="--sigma", value=f"{args.sigma:g}"))
+    if not Path(args.track).exists():
+        if args.track not in datasets.names():
+            raise InputError(Defect("does not exist, and no shipped record has this name", file=args.track))
+        resource = datasets.resource(args.track)
+        conditions = read_conditions(args.conditions) if args.conditions else resource.conditions
+        return Tracked(datasets.load_track(args.track, args.sigma), conditions, resource.kind)
+    if not args.conditions and not without_conditions:
+        raise InputError(
+            f"{args.track}: fluid and sphere are needed: --conditions FILE (impacts --template writes an example)"
+        )
+    options.check_track_columns(args.column)
+    settings = options.settings_of(args)
+    table = read_foreign(args.track, settings.decimal)
+    kinds = fitting_schemas(table.header, {})
+    if not is_track(table, settings) and len(kinds) == 1:
+        rule = f"is a {kinds[0].name} table, not a track of time and gap or velocity"
+        raise InputError(Defect(rule, file=args.track))
+    conditions = read_conditions(args.conditions) if args.conditions else None
+    found = read_track(table, settings, conditions)
+    return Tracked(found.track(args.sigma), conditions, "measured", found.reading, found.notes)

@@ -1,0 +1,248 @@
+"""Rows of the table of impacts from times of contact or apexes, with errors from those of the values.
+
+Each value has an independent error; e and St follow from several values, so that their errors come from the slopes
+
+    cov = J diag(sigma^2) J^T
+
+by central differences, and neighbouring impacts share values. Where the approach to the first contact is not
+known, what is assumed of it is among them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.bounce import terminal_speed
+from restitution.conditions import Conditions, QuotedImpact
+from restitution.errors import InputError
+from restitution.flights import drag, free
+from restitution.flights.table import Flights, Kind
+from restitution.stokes import Speed, convention
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FIRST, FIRST_SIGMA = 1.15, 0.15
+"""Restitution of the first contact over that of the second, where nothing tells the first: 1.0 to 1.3 in measured
+records, for a slower impact loses more."""
+GRAVITY = 9.81
+"""In m/s2, for speeds without drag where no conditions are stated."""
+BEYOND = 1.3
+"""Times the terminal speed above which no flight begins or ends."""
+_WORDS = {"times": "times of contact", "apexes": "apexes"}
+
+
+@dataclass(frozen=True)
+class FlightImpacts:
+    """Rows of the impact table (without St where conditions are not stated), ``free`` e without drag of each row.
+
+    ``notes`` say what was assumed, ``doubts`` what contradicts the input.
+    """
+
+    rows: list[dict] = field(repr=False)
+    free: list[float]
+    notes: list[str]
+    doubts: list[str]
+
+    def table(self) -> pd.DataFrame:
+        """The rows as a table with the columns of the impact schema."""
+        import pandas as pd
+
+        from restitution import datasets
+
+        return pd.DataFrame(self.rows, columns=datasets.schema("impact").columns)
+
+
+def impacts_of(
+    flights: Flights, conditions: Conditions | None, with_drag: bool = True, stokes: str = "st", record: str = ""
+) -> FlightImpacts:
+    """The impacts that lie between two known flights, or between a release or quoted speed and the first one.
+
+    Parameters
+    ----------
+    flights : times of contact or apexes.
+    conditions : fluid and sphere; None: e without drag alone.
+    with_drag : by the point particle, else in the limit of no drag.
+    stokes : convention of the St reported.
+    record : name that every row carries.
+
+    Raises
+    ------
+    InputError : where no two flights follow each other, or for a sphere that does not sink.
+    """
+    found = FlightImpacts([], [], [], [])
+    quoted = None if conditions is None else conditions.impact
+    missing = sorted(set(range(flights.number[0], flights.number[-1] + 1)) - set(flights.number.tolist()))
+    if missing:
+        found.notes.append(
+            f"bounce {', '.join(map(str, missing[:5]))} is missing: the flights beside it are not used"
+        )
+    if np.isnan(flights.sigma).any():
+        what = _WORDS[flights.kind]
+        found.notes.append(
+            f"errors of the {what} are not stated (a column sigma, or --sigma): those of e are left open"
+        )
+    for rows in flights.runs():
+        number, value, sigma = flights.number[rows], flights.value[rows], flights.sigma[rows]
+        if len(number) > 1:
+            first = quoted if number[0] == 1 else None
+            by_drag = with_drag and conditions is not None
+            run = _Succession(flights.kind, number, value, sigma, conditions, first, by_drag)
+            _of_succession(found, run, flights, stokes, record)
+    if not found.rows and not found.doubts:
+        least = (
+            "three times of contact in a row" if flights.kind == "times" else "the apexes of two flights in a row"
+        )
+        raise InputError(f"no impact lies between two known flights: {least} are needed")
+    return found
+
+
+@dataclass(frozen=True)
+class _Succession:
+    """Bounces whose numbers follow each other, and what their speeds follow from.
+
+    Inputs are the values, the quoted speed of the first contact (0: none), and the restitution of the first
+    contact over that of the second.
+    """
+
+    kind: Kind
+    numbers: NDArray
+    values: NDArray
+    sigma: NDArray
+    conditions: Conditions | None
+    quoted: QuotedImpact | None
+    by_drag: bool
+
+    @property
+    def released(self) -> bool:
+        return bool(self.numbers[0] == 0)
+
+    @property
+    def contacts(self) -> NDArray:
+        """Numbers of the contacts."""
+        return self.numbers[1:] if self.released else self.numbers
+
+    @property
+    def assumed(self) -> bool:
+        """Whether the speed of the first approach is assumed."""
+        return self.by_drag and not self.released and self.quoted is None
+
+    def inputs(self) -> tuple[NDArray, NDArray]:
+        """The inputs and their errors, NaN where an error is not stated."""
+        quoted = (0.0, 0.0) if self.quoted is None else (self.quoted.speed, self.quoted.speed_sigma)
+        errors = np.array([*self.sigma, quoted[1], FIRST_SIGMA if self.assumed else 0.0])
+        return np.array([*self.values, quoted[0], FIRST]), errors
+
+    def without_drag(self, x: NDArray) -> NDArray:
+        """Speeds before and after each contact, shape (2, contacts)."""
+        g_eff = GRAVITY if self.conditions is None else self.conditions.free_fall
+        before, after = free.speeds(self.kind, self.numbers, x[:-2], g_eff)
+        if self.quoted is not None:
+            before[0] = x[-2]
+        return np.array([before, after])
+
+    def speeds(self, x: NDArray, fallen: bool = False) -> NDArray:
+        """The same by the model that was asked for."""
+        if not self.by_drag:
+            return self.without_drag(x)
+        quoted = None if self.quoted is None else float(x[-2])
+        return np.array(
+            drag.speeds(self.kind, self.numbers, x[:-2], self.conditions, quoted, float(x[-1]), fallen)
+        )
+
+    def with_slopes(self) -> tuple[NDArray, NDArray]:
+        """The speeds, and how far each error moves them, shape (errors, 2, contacts); NaN: an error not stated.
+
+        An approach that was steady and one that was a fall from rest are equally likely: the speeds are the mean
+        of both, half their difference the last of the errors.
+        """
+        x, errors = self.inputs()
+        speeds = self.speeds(x)
+        moves = []
+        for i, error in enumerate(errors):
+            if math.isnan(error):
+                moves.append(np.full_like(speeds, math.nan))
+            elif error > 0:
+                up, down = x.copy(), x.copy()
+                up[i] += error
+                down[i] -= error
+                moves.append((self.speeds(up) - self.speeds(down)) / 2)
+        if self.by_drag and not self.released:
+            half = np.nan_to_num(self.speeds(x, fallen=True) - speeds) / 2
+            speeds = speeds + half
+            moves.append(half)
+        return speeds, np.array(moves).reshape(-1, *speeds.shape)
+
+
+def _of_succession(found: FlightImpacts, run: _Succession, flights: Flights, stokes: str, record: str) -> None:
+    """Add its impacts."""
+    (before, after), moves = run.with_slopes()
+    e_free = np.divide(*run.without_drag(run.inputs()[0])[::-1])
+    _doubt(found, run, (before, after), e_free)
+    known = np.flatnonzero(np.isfinite(before) & np.isfinite(after))
+    if run.assumed and len(known):
+        found.notes.append(
+            f"the approach to bounce {run.numbers[0]} is not in the {_WORDS[run.kind]}: taken to be that of an e "
+            f"{FIRST} +- {FIRST_SIGMA} times that of the next (a row 0, the release, or [impact] speed says it)"
+        )
+    for k in known:
+        v, out, contact = float(before[k]), float(after[k]), int(run.contacts[k])
+        v_moves, out_moves = moves[:, 0, k], moves[:, 1, k]
+        e_moves = (out_moves - out / v * v_moves) / v
+        v_sigma, out_sigma, e_sigma = (float(np.linalg.norm(m)) for m in (v_moves, out_moves, e_moves))
+        both = v_sigma * e_sigma
+        label = f"by {_WORDS[run.kind]}, "
+        label += f"with drag (without: e {e_free[k]:.3f})" if run.by_drag else "in the limit of no drag"
+        row = {
+            "record": record, "impact": contact, "kind": "measured", "outcome": "rebound",
+            "time_s": _time(flights, contact), "speed_definition": str(Speed.FAR),
+            "impact_speed_m_s": v, "impact_speed_sigma_m_s": v_sigma,
+            "rebound_speed_m_s": out, "rebound_speed_sigma_m_s": out_sigma,
+            "e_eff": out / v, "e_eff_sigma": e_sigma,
+            "e_stokes_correlation": float(v_moves @ e_moves) / both if both > 0 else math.nan, "note": label,
+        }  # fmt: skip
+        if run.conditions is not None:
+            per_speed = convention(stokes).per_speed(run.conditions)
+            row |= {
+                "stokes_convention": stokes, "stokes": v * per_speed, "stokes_sigma": v_sigma * per_speed,
+                "e_dry": run.conditions.sphere.e_dry,
+            }  # fmt: skip
+        found.rows.append(row)
+        found.free.append(float(e_free[k]))
+
+
+def _time(flights: Flights, contact: int) -> float:
+    if flights.kind == "apexes":
+        return math.nan
+    return float(flights.value[np.flatnonzero(flights.number == contact)[0]])
+
+
+def _doubt(found: FlightImpacts, run: _Succession, speeds: tuple[NDArray, NDArray], e_free: NDArray) -> None:
+    """What the flights contradict."""
+    for contact in run.contacts[e_free > 1]:
+        what = "lasts longer" if run.kind == "times" else "rises higher"
+        found.doubts.append(
+            f"the flight after bounce {contact} {what} than the one before: is a bounce missing before it, or one "
+            "too many counted?"
+        )
+    lacking = run.contacts[np.isnan(speeds[1]) & np.isfinite(e_free)]
+    if len(lacking):
+        found.doubts.append(
+            f"no e up to 1 gives the flight after bounce {lacking[0]} with the drag of these conditions: "
+            "this and later bounces have no e (--no-drag gives the ratio of flights)"
+        )
+    c = run.conditions
+    if c is not None and c.sphere.density > c.fluid.density:
+        fast, terminal = float(np.nanmax(speeds[0], initial=0.0)), terminal_speed(c)
+        if fast > BEYOND * terminal:
+            option = "--time-unit" if run.kind == "times" else "--unit"
+            found.doubts.append(
+                f"bounces come in at {fast:.3g} m/s, {fast / terminal:.2g} times the terminal speed under these "
+                f"conditions ({terminal:.3g} m/s): are the {_WORDS[run.kind]} in this unit ({option}), fluid and "
+                "sphere these?"
+            )
