@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from restitution.errors import ConventionError
+from restitution.errors import ConventionError, Defect, InputError
 
 if TYPE_CHECKING:
     from restitution.conditions import Conditions
@@ -53,7 +53,13 @@ class Speed(StrEnum):
 MEASURED_SPEEDS = (Speed.FAR, Speed.CONTACT, Speed.WINDOW)
 """The definitions that a track can be measured by."""
 H_FILM = 0.1
-"""Gap outside which a sphere counts as outside the film, in diameters: where the ``far`` speed is of."""
+"""Gap outside which a sphere counts as outside the film, in diameters: where the ``far`` speed is of.
+
+An e_eff of the ``far`` speed has the film of one edge in it, this one where nobody states another: the wider the
+film, the more of the loss is in e_eff. A number of another edge is converted (:mod:`restitution.bounce.edges`).
+"""
+WIDEST_FILM = 1.0
+"""Edge in diameters beyond which nothing is a film."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +131,14 @@ CONVENTIONS: dict[str, Convention] = {
 
 # Fixed ratios to ``st`` that hold for any sphere and fluid, so that these need no conditions.
 _RATIO_TO_ST = {"st": 1.0, "st_d": 9.0, "st_18": 0.5}
+
+
+def film_edge(given: float, field: str = "edge") -> float:
+    """An edge of the film in diameters; raises :class:`InputError` for one out of range."""
+    if not 0 < given <= WIDEST_FILM:  # also NaN
+        rule = f"is the edge of the film in diameters: above 0, at most {WIDEST_FILM:g}"
+        raise InputError(Defect(rule, field=field, value=f"{given:g}"))
+    return given
 
 
 def convention(key: str) -> Convention:

@@ -7,9 +7,8 @@ that from the contact time, here it is only named.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, takewhile
+from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -81,6 +80,8 @@ class Contacts:
 
     contacts: list[Contact]
     level: float | None
+    hovering: tuple[int, ...] = ()
+    """Lowest frames of minima that are no contacts, since they lie far above the wall."""
 
 
 def noise(time: NDArray, value: NDArray) -> float:
@@ -99,14 +100,22 @@ def noise(time: NDArray, value: NDArray) -> float:
     sigma = np.median(np.abs((weight * y).sum(axis=1))) / 0.6745
     span = np.ptp(value)
     levels = np.unique(np.round(value / span, 9)) * span if span > 0 else np.zeros(1)
-    grid = np.min(np.diff(levels), initial=np.inf) / np.sqrt(12) if len(levels) > 1 else 0.0
-    return float(max(sigma, grid, 1e-6 * span))  # noise-free records keep a finite weight
+    return float(max(sigma, _grid(levels) / np.sqrt(12), 1e-6 * span))  # noise-free records keep a finite weight
+
+
+def _grid(levels: NDArray) -> float:
+    """The step of which all distances between ``levels`` are multiples; 0 where there is none."""
+    steps = np.diff(levels)
+    if not len(steps):
+        return 0.0
+    multiples = steps / steps.min()
+    return float(steps.min()) if np.all(np.abs(multiples - np.rint(multiples)) < 0.01) else 0.0
 
 
 def contacts(track: Track) -> Contacts:
     """All contacts of the track, the last one also where the sphere then stays at the wall."""
     rest, level = _rest(track)
-    turns = _minima(track) if track.quantity == "gap" else _reversals(track)
+    turns, hovering = _minima(track, rest, level) if track.quantity == "gap" else (_reversals(track), ())
     turns = [turn for turn in turns if turn[2] < rest]
     begins = [0, *(first for _, _, first in turns)]
     ends = [*(last for last, _, _ in turns[1:]), rest]
@@ -116,50 +125,143 @@ def contacts(track: Track) -> Contacts:
     ]
     if level is not None:
         found.append(Contact(range(begins[-1], rest), None, range(0)))
-    return Contacts(found, level)
+    return Contacts(found, level, hovering)
 
 
-def _minima(track: Track) -> list[tuple[int, int | None, int]]:
-    """Contacts of a gap track: end of the approach, nearest frame, begin of the rebound."""
-    return [(i, i, i + 1) for i in lowest_points(track.value.tolist(), DETECTION * track.sigma)]
+def _minima(
+    track: Track, rest: int, level: float | None
+) -> tuple[list[tuple[int, int | None, int]], tuple[int, ...]]:
+    """Contacts of a gap track: end of the approach, nearest frame, begin of the rebound; and minima in mid-air.
+
+    The sphere meets the wall where the frames beside it lie at most a frame's way above it. A minimum that
+    is higher than this, and nearer to the top of the lower of its flights than to the wall, is no contact.
+    """
+    value, limit = track.value, DETECTION * track.sigma
+    lows = [i for i in _lowest_frames(track, limit) if i < rest]
+    if not lows:
+        return [], ()
+    # Below zero lies the overlap of a soft contact.
+    wall = level if level is not None else max(0.0, float(min(value[i] for i in lows)))
+    steps = np.abs(np.diff(value))
+    touching, hovering = [], []
+    for k, i in enumerate(lows):
+        left, right = (lows[k - 1] if k else 0), (lows[k + 1] if k + 1 < len(lows) else rest)
+        top = min(value[left : i + 1].max(), value[i:right].max())
+        way = _FRAMES_WAY * float(np.median(steps[max(i - _BESIDE, 0) : i + _BESIDE]))
+        above = value[i] - wall > max(0.5 * (top - wall), way + limit)
+        (hovering if above else touching).append(i)
+    return [(i, i, i + 1) for i in touching], tuple(hovering)
 
 
-def lowest_points(value: Sequence[float], depth: float) -> list[int]:
+def _lowest_frames(track: Track, limit: float) -> list[int]:
+    """The lowest frame of every minimum deeper than ``limit``, found in means of so many frames that few
+    make a top.
+
+    Of very many frames about the top of a flight some differ by more than the limit by noise alone.
+    """
+    value = track.value
+    m = max(1, int(_lasting(limit) / float(np.median(np.diff(track.time_s))) / _FRAMES_OF_A_TOP))
+    if m == 1:
+        return lowest_points(value, limit)
+    begins = np.arange(0, len(value) - m + 1, m)
+    means = np.add.reduceat(value, begins)[:-1] / m
+    around = [(max((b - 1) * m, 0), (b + 2) * m) for b in lowest_points(means, limit)]
+    return [first + int(np.argmin(value[first:last])) for first, last in around]
+
+
+_FRAMES_OF_A_TOP = 16
+"""Frames within the limit of a flight's top; the noise of so many seldom differs by it."""
+
+
+def _lasting(height: float) -> float:
+    """How long in s a flight of ``height`` in m lasts."""
+    return float(2 * np.sqrt(2 * height / GRAVITY))
+
+
+_FRAMES_WAY = 2.0
+"""How many frames' way a lowest frame may lie above the wall: the frame, and half as much for what slows it."""
+_BESIDE = 4
+"""Frames on each side that tell how far the sphere moves in one."""
+
+
+def lowest_points(value: NDArray, depth: float) -> list[int]:
     """Where minima lie from which one must rise by ``depth`` on both sides to come to a lower place.
 
-    Those of ``scipy.signal.find_peaks`` by its prominence, without that package, which takes a second to load. A
-    flat minimum is counted at its middle, the ends of the record are none.
+    A flat minimum is counted at its middle, the ends of the record are none. One pass over the record: the lowest
+    place so far is a minimum once the record has risen from it by ``depth``.
     """
-    found = []
-    for left, right in _flat_minima(value):
-        highest = []
-        for side in (range(left, -1, -1), range(right, len(value))):
-            above = takewhile(value[left].__le__, map(value.__getitem__, side))
-            highest.append(max(above))
-        if min(highest) - value[left] >= depth:
-            found.append((left + right) // 2)
+    if len(value) == 0:
+        return []
+    begins = np.flatnonzero(np.diff(value, prepend=np.nan) != 0)
+    ends = np.append(begins[1:], len(value)) - 1
+    heights = np.asarray(value, float)[begins].tolist()
+    found, falling, low, top = [], False, 0, heights[0]
+    for k, height in enumerate(heights):
+        if not falling:
+            top = max(top, height)
+            falling, low = top - height >= depth and height < top, k
+        elif height < heights[low]:
+            low = k
+        elif height - heights[low] >= depth:
+            found.append(int(begins[low] + ends[low]) // 2)
+            falling, top = False, height
     return found
 
 
-def _flat_minima(value: Sequence[float]) -> Iterator[tuple[int, int]]:
-    """First and last place of every run of equal values whose neighbours are both greater."""
-    left = 0
-    for i in range(1, len(value)):
-        if value[i] != value[left]:
-            if left > 0 and value[left - 1] > value[left] < value[i]:
-                yield left, i - 1
-            left = i
-
-
 def _reversals(track: Track) -> list[tuple[int, int | None, int]]:
-    """Contacts of a velocity track: from towards the wall to away from it, beyond noise, within two frames.
+    """Contacts of a velocity track: from towards the wall to away from it, beyond noise, faster than gravity
+    turns.
 
-    A frame between the two has seen both sides of the contact and belongs to neither.
+    A frame between the two has seen both sides of the contact and belongs to neither. Where the velocity grows on
+    after it has turned, the contact lasts: nothing but the wall pushes the sphere away, so all frames about the
+    turn whose velocity so grows belong to the contact.
     """
-    sign = np.sign(np.where(np.abs(track.value) < DETECTION * track.sigma, 0.0, track.value))
+    time, value = track.time_s, track.value
+    sign = np.sign(np.where(np.abs(value) < DETECTION * track.sigma, 0.0, value))
     moving = np.flatnonzero(sign)
-    turns = [(int(k), int(j)) for k, j in pairwise(moving) if sign[k] < 0 < sign[j] and j - k <= 2]
-    return [(k + 1, None, j) for k, j in turns]
+    slope = np.diff(value) / np.diff(time)
+    grows = slope > DETECTION * np.sqrt(2) * track.sigma / np.diff(time)
+    steep = grows & (slope > _STEEP * np.median(np.abs(slope)))
+    turns = []
+    for k, j in pairwise(moving.tolist()):
+        if not sign[k] < 0 < sign[j]:
+            continue
+        if j - k > 2 and value[j] - value[k] < _STEEP * GRAVITY * (time[j] - time[k]):
+            continue
+        pushed = j
+        while pushed < len(grows) and grows[pushed]:
+            pushed += 1
+        if pushed > j:
+            while k > 0 and steep[k - 1]:
+                k -= 1
+            k, pushed = max(k - 1, 0), min(pushed + 1, len(value) - 1)  # begin and end lie within a frame
+        turns.append((k + 1, None, pushed))
+    return turns
+
+
+_STEEP = 8.0
+"""Times the typical acceleration of a record from which on the wall pushes: a wake brakes by three."""
+
+
+def begins_on_rebound(track: Track, found: Contacts) -> bool:
+    """Whether the record begins on a rebound: up to its first contact it rises from the first frame on,
+    fastest at first.
+
+    A sphere that is held or lifted before its release does not; nor does noise about the release.
+    """
+    end = found.contacts[0].approach.stop if found.contacts else len(track.time_s)
+    flight, limit = track.value[:end], DETECTION * track.sigma
+    if len(flight) < 3:
+        return False
+    if track.quantity == "velocity":
+        return bool(flight[0] > limit)
+    top = int(np.argmax(flight))
+    rise = flight[top] - flight[0]
+    if top == 0 or rise < np.sqrt(2) * limit:
+        return False
+    share = (track.time_s[top] - track.time_s[0]) / 3
+    early = np.interp(track.time_s[0] + share, track.time_s[: top + 1], flight[: top + 1])
+    return bool(early - flight[0] > 0.4 * rise)
 
 
 def _rest(track: Track) -> tuple[int, float | None]:
@@ -178,7 +280,7 @@ def _rest(track: Track) -> tuple[int, float | None]:
         return n, None
     t, y = time[rest:] - time[rest:].mean(), value[rest:] - level
     limit = DETECTION * track.sigma
-    unseen = 2 * np.sqrt(2 * limit / GRAVITY) if track.quantity == "gap" else 2 * limit / GRAVITY
+    unseen = _lasting(limit) if track.quantity == "gap" else 2 * limit / GRAVITY
     trend, error = (t @ y) / (t @ t), track.sigma / np.sqrt(t @ t)
     if np.ptp(t) < unseen or abs(trend) > 4 * error:
         return n, None

@@ -14,16 +14,19 @@ Vertical motion, gap h > 0, velocity v = dh/dt:
 :mod:`~restitution.bounce.closures` says what may be chosen, :mod:`~restitution.bounce.kernel` how it is
 integrated, :mod:`~restitution.bounce.history` how the memory is kept, :mod:`~restitution.bounce.added_mass` what
 the wall does to the added mass, :mod:`~restitution.bounce.wake` what a rebound meets,
-:mod:`~restitution.bounce.agreement` how far a record is, :mod:`~restitution.bounce.sensitivity` what matters.
+:mod:`~restitution.bounce.agreement` how far a record is, :mod:`~restitution.bounce.sensitivity` what matters,
+:mod:`~restitution.bounce.edges` what an e_eff of one edge of the film is at another.
 :mod:`~restitution.bounce.model` puts them together from ``forces``, ``drive`` and ``tables``, ``shared`` for many
 restitutions at once; ``ehd_solution`` is a rebound of its own, of a soft sphere, that one of the laws tabulates.
 """
 
 from restitution.bounce.agreement import distance_from_contact_d, release_of
-from restitution.bounce.closures import Closures, Release, terminal_speed
+from restitution.bounce.closures import Closures, Release
 from restitution.bounce.drive import Drive
+from restitution.bounce.edges import law_at
 from restitution.bounce.model import Impact, IntegrationError, Trajectory, bounce
 from restitution.bounce.wake import OwnWake
+from restitution.laws.drag import terminal_speed
 
 __all__ = [
     "Closures",
@@ -35,6 +38,7 @@ __all__ = [
     "Trajectory",
     "bounce",
     "distance_from_contact_d",
+    "law_at",
     "release_of",
     "terminal_speed",
 ]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
-from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -16,7 +15,7 @@ from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.laws.brenner_1961 import Brenner1961
 from restitution.laws.cavitation import ATMOSPHERE
-from restitution.laws.drag import DragLaw, SchillerNaumann1935, steady
+from restitution.laws.drag import DragLaw, SchillerNaumann1935
 from restitution.laws.film import YangHunt2008
 from restitution.laws.history import DorganLoth2007, HistoryLaw
 from restitution.laws.rebound import ReboundLaw
@@ -64,11 +63,20 @@ class Closures:
     reduced_modulus: float | None = None
     """E* of the two bodies in Pa: the contact gap is then at least the elastohydrodynamic one (Yang & Hunt 2008)
     at the speed with which the sphere enters the film."""
-    film: float = H_FILM
-    """Edge of the film in diameters. A law's constants belong to it: the wider the film, the more of the loss is
-    in e_eff. The same frames want K of Eq. (4) to be 8.4, 10.9 and 14.5 at 0.05, 0.1 and 0.2 d."""
+    film: float | None = None
+    """Edge of the film in diameters, by default that of the law, else 0.1. A law's constants belong to it: the
+    wider the film, the more of the loss is in e_eff (``python -m benchmarks.film_edges``)."""
 
     def __post_init__(self) -> None:
+        own = getattr(self.rebound, "edge", None)
+        if self.film is None:
+            object.__setattr__(self, "film", H_FILM if own is None else own)
+        elif own is not None and own != self.film:
+            rule = (
+                f"is not the edge of the film that {self.rebound.name} belongs to, {own:g} d: leave it out, or "
+                "convert the law by restitution.bounce.law_at"
+            )
+            raise InputError(Defect(rule, field="film", value=f"{self.film:g}"))
         if self.lubrication is None:
             object.__setattr__(self, "lubrication", not self.black_box)
         if self.rebound is not None and self.measured is not None:
@@ -175,24 +183,3 @@ class Release:
         if self.drive is not None:
             return self.drive.lagged(rates)
         return np.full(len(rates), -self.speed if self.developed else 0.0)
-
-
-def excess_weight(conditions: Conditions) -> float:
-    """Gravity less buoyancy in N; raises :class:`InputError` for a sphere that does not sink."""
-    ratio = conditions.sphere.density / conditions.fluid.density
-    if not ratio > 1:
-        raise InputError(
-            Defect("is the density ratio sphere to fluid; only a sphere heavier than the fluid falls on the wall",
-                   field="sphere.density / fluid.density", value=f"{ratio:g}")
-        )  # fmt: skip
-    volume = math.pi * conditions.sphere.diameter**3 / 6
-    return (conditions.sphere.density - conditions.fluid.density) * volume * conditions.gravity
-
-
-@lru_cache(maxsize=256)
-def terminal_speed(conditions: Conditions, drag: DragLaw | None = None) -> float:
-    """The steady speed in m/s far from walls at which ``drag`` balances gravity less buoyancy."""
-    c = conditions
-    return steady(
-        drag or SchillerNaumann1935(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity
-    )

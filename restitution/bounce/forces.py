@@ -10,12 +10,12 @@ import numpy as np
 
 from restitution.bounce import history
 from restitution.bounce.added_mass import added_mass, added_mass_slope
-from restitution.bounce.closures import Closures, excess_weight, terminal_speed
+from restitution.bounce.closures import Closures
 from restitution.bounce.kernel import Forces
 from restitution.bounce.tables import Table, constant, tabulate
 from restitution.conditions import Conditions
 from restitution.laws.cavitation import film_edge
-from restitution.laws.drag import DragLaw
+from restitution.laws.drag import DragLaw, excess_weight, terminal_speed
 from restitution.laws.history import FiniteReynolds, HistoryLaw
 from restitution.laws.resistance import ResistanceLaw
 

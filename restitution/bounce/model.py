@@ -19,13 +19,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.bounce.closures import Closures, Release, terminal_speed
+from restitution.bounce.closures import Closures, Release
 from restitution.bounce.forces import GREATEST_RE, expected_reynolds, forces
 from restitution.bounce.kernel import END, FELL, FULL, ROSE, Forces, fly
 from restitution.bounce.tables import look
 from restitution.bounce.wake import NONE, OwnWake, Wake, left_behind
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
+from restitution.laws.drag import terminal_speed
 from restitution.stokes import StokesNumber
 
 if TYPE_CHECKING:

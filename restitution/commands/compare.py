@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from restitution.commands import fit_options, options
-from restitution.commands.console import show, show_rows
+from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.result.ranking import Ranking, Row
@@ -38,8 +38,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> None:
     """Print the ranking, best first, and what the data do not separate."""
     from restitution import laws
+    from restitution.calibration.reading.impact_checks import doubts_about
     from restitution.calibration.reading.impact_data import read
     from restitution.calibration.result.ranking import rank
+    from restitution.doubts import refuse
     from restitution.errors import InputError
     from restitution.files import write_whole
 
@@ -54,12 +56,16 @@ def run(args: argparse.Namespace) -> None:
         if args.as_published:
             plan = replace(plan, fixed={p.name: p.start for p in plan.model.parameters} | dict(plan.fixed))
         plans.append((law, plan))
+    doubts = doubts_about(observations, plans[0][1].known_e_dry)
+    if args.strict:
+        refuse(doubts)
     progress = (lambda law: print(f"fitting {law} ...", file=sys.stderr)) if sys.stderr.isatty() else None  # noqa: T201
     ranking = rank(plans, observations, progress=progress)
     if args.out:
         write_whole(args.out, _csv(ranking))
     show(f"{len(observations)} impacts; higher elpd and lower AIC, BIC are better; d: less than the best")
     _show(ranking)
+    show_doubts(doubts)
 
 
 HEADINGS = (

@@ -48,6 +48,12 @@ def show_facts(facts: Iterable[tuple[str, str]]) -> None:
     show(table)
 
 
+def show_doubts(doubts: Iterable[object]) -> None:
+    """Print what is doubtful, one line each, none twice."""
+    for doubt in dict.fromkeys(map(str, doubts)):
+        show(f"doubt: {doubt}")
+
+
 def cell(value: object) -> str:
     """A value of a table as text; nothing for a missing one."""
     if isinstance(value, float):

@@ -49,6 +49,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.calibration.reading.impact_data import read
     from restitution.calibration.result.fit_result import result_of
     from restitution.calibration.result.fit_summary import describe
+    from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 
@@ -65,6 +66,8 @@ def run(args: argparse.Namespace) -> None:
     observations = read(args.data, fit_options.reading_of(args))
     law = args.law or "eq4_exponential"
     fit = estimate(fit_options.plan_of(args, law, args.law_stokes or observations.convention), observations)
+    if args.strict:
+        refuse(fit.doubts)
     chain = None
     if args.posterior:
         from restitution.calibration.estimation.posterior import sample

@@ -29,9 +29,17 @@ def add_data(parser: argparse.ArgumentParser) -> None:
         choices=("far", "contact", "window", "film_edge", "unstated"),
         help="which impact speed the data mean; of a track, which one to take",
     )
+    parser.add_argument(
+        "--edge",
+        type=float,
+        metavar="H",
+        help="gap in diameters at which the film ends, for the speed far: of a track, which one to take; of a "
+        "table, which one its e_eff mean (default: as its column film_edge_d states, else 0.1)",
+    )
     parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML, where columns do not say")
     options.add_columns(parser)
     options.add_track(parser)
+    options.add_strict(parser)
     parser.add_argument(
         "--allow-unphysical", action="store_true", help="take e_eff above 1 or below 0 as measured"
     )
@@ -102,13 +110,14 @@ def reading_of(args: argparse.Namespace) -> Reading:
     """How the files are read, from the options."""
     from restitution.calibration.reading.reading import Reading
     from restitution.conditions import read_conditions
-    from restitution.stokes import Speed, convention
+    from restitution.stokes import Speed, convention, film_edge
 
     if args.stokes is not None:
         convention(args.stokes)
     return Reading(
         stokes=args.stokes,
         speed=None if args.speed is None else Speed(args.speed),
+        edge=None if args.edge is None else film_edge(args.edge, "--edge"),
         columns=dict(args.column),
         conditions=read_conditions(args.conditions) if args.conditions else None,
         unphysical=args.allow_unphysical,

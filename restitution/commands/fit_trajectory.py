@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands import fit_options
-from restitution.commands.console import show, show_facts, show_rows
+from restitution.commands.console import show, show_doubts, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.reading.reading import Reading
@@ -37,11 +37,14 @@ def run(args: argparse.Namespace) -> None:
     """Fit, print, and write what was asked for."""
     from restitution.calibration.result.fit_result import chain_of
     from restitution.calibration.result.fit_summary import describe
-    from restitution.calibration.trajectories.fit import Measured, fit_law
+    from restitution.calibration.trajectories.doubts import of_records
+    from restitution.calibration.trajectories.fit import FEW, Measured, fit_law
     from restitution.calibration.trajectories.recordings import read_recordings
+    from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
     from restitution.laws.source_abstract_eq4 import READINGS
+    from restitution.stokes import H_FILM
 
     if args.speed not in (None, "far"):
         rule = "a whole trajectory gives the speed of the motion outside the film: far"
@@ -55,12 +58,24 @@ def run(args: argparse.Namespace) -> None:
         law: fit_options.plan_of(args, law, args.law_stokes or how.stokes or "st", strict=args.law is not None)
         for law in ((args.law,) if args.law else READINGS)
     }
-    measured = Measured.of(read_recordings(args.data, how), wakes)
+    edge = H_FILM if how.edge is None else how.edge
+    measured = Measured.of(read_recordings(args.data, how), wakes, edge)
+    show(f"within {edge:g} d of the wall e_eff stands for every viscous force; its law's constants belong to that")
     _show_records(measured)
-    best = args.law
-    if best is None:
-        best = _rank(measured, plans, how)
+    doubts = list(of_records(measured.trajectories[measured.preferred]))
+    told = measured.rebounds_outside()
+    if told == 0 or (args.law is None and told <= FEW):
+        rule = f"{told or 'no'} rebound{'' if told == 1 else 's'} out of the film"
+        show(f"laws are not ranked: {rule}, more than {FEW} are needed" + ("" if told else "; nothing is fitted"))
+    if told == 0 or (args.law is None and told <= FEW and not (args.out or args.report)):
+        show_doubts(doubts)
+        if args.strict:
+            refuse(doubts)
+        return
+    best = args.law or (READINGS[0] if told <= FEW else _rank(measured, plans, how))
     fit = fit_law(measured, plans[best], how)
+    if args.strict:
+        refuse(fit.doubts)
     result = fit.result()
     if args.posterior:
         from restitution.calibration.estimation.posterior import sample

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands import flights, options, tracked
-from restitution.commands.console import show, show_rows
+from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,6 +32,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     tracked.add_options(parser)
     flights.add_options(parser)
+    options.add_strict(parser)
     parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
     parser.add_argument(
         "--template", metavar="FOLDER", help="write track.csv, conditions.toml, settings.toml to start from"
@@ -40,6 +42,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> None:
     """Print the impacts of a track, and write them where asked."""
+    from restitution.doubts import refuse
     from restitution.errors import InputError
     from restitution.files import write_whole
     from restitution.tables.writing import table_text
@@ -55,14 +58,19 @@ def run(args: argparse.Namespace) -> None:
         return
     read = tracked.read(args)
     impacts = read.impacts(args)
+    if args.strict:
+        refuse(replace(doubt, where=args.track) for doubt in impacts.doubts)
     table = impacts.table()
     if args.out:
-        write_whole(args.out, table_text(table.assign(time_s=_times(table))))
+        names = [f"doubt: {doubt.name}" for doubt in impacts.doubts]
+        notes = table.note.map(lambda note: "; ".join(filter(None, [note, *names])))
+        write_whole(args.out, table_text(table.assign(time_s=_times(table), note=notes)))
     if read.reading:
         show(f"read: {read.reading}")
     show_impacts(table, impacts.sigma, "m" if read.track.quantity == "gap" else "m/s")
     for note in (*read.notes, *impacts.notes):
         show(f"note: {note}")
+    show_doubts(impacts.doubts)
 
 
 _LATE = 1e2
@@ -90,7 +98,7 @@ def show_impacts(table: pd.DataFrame, sigma: float, unit: str) -> None:
         v_in = with_error(r.impact_speed_m_s, r.impact_speed_sigma_m_s, 4)
         v_out = with_error(r.rebound_speed_m_s, r.rebound_speed_sigma_m_s, 4)
         e = with_error(r.e_eff, r.e_eff_sigma, 3) if resolved else f"< {r.e_eff_upper:.3f}"
-        St = with_error(r.stokes, r.stokes_sigma, 1)
+        St = with_error(r.stokes, r.stokes_sigma, 1 if r.stokes > 3 else 3)
         rows.append((str(r.impact), f"{r.time_s:.5g}" if short else f"{r.time_s:.4f}", v_in, v_out, St, e, r.note))
     first = table.iloc[0]
     show(f"speed: {first.speed_definition}, Stokes number: {first.stokes_convention}, noise: {sigma:.2g} {unit}")

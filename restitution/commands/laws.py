@@ -88,6 +88,7 @@ def _about(law: Law) -> list[tuple[str, str]]:
     if isinstance(law, ReboundLaw):
         facts.append(("Stokes number", f"{law.convention}: {convention(law.convention).definition}"))
         facts.append(("impact speed", str(law.speed)))
+        facts.append(("edge of the film", "unstated: taken at any" if law.edge is None else f"{law.edge:g} d"))
     for f in law.parameter_fields():
         unit, (least, most) = f.metadata["unit"], f.metadata["bounds"]
         unit = "" if unit == "1" else f" {unit}"

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from restitution.commands import flights, options, tracked
-from restitution.commands.console import show
+from restitution.commands.console import show, show_doubts
 from restitution.commands.impacts import show_impacts
 
 
@@ -36,6 +36,7 @@ def run(args: argparse.Namespace) -> None:
     """Say how the track was read, write its picture, and open it."""
     import tempfile
 
+    from restitution.doubts import cleaned
     from restitution.errors import Defect, InputError
     from restitution.files import check_folder, write_folder, write_whole
     from restitution.report.look import Told, pages, view_of
@@ -49,24 +50,27 @@ def run(args: argparse.Namespace) -> None:
         rule = "has bounces alone, no track to look at: restitution impacts takes it"
         raise InputError(Defect(rule, file=args.track))
     read = tracked.read(args, without_conditions=True)
-    impacts, notes = None, [*read.notes]
+    impacts, notes, doubts = None, [*read.notes], list(cleaned(read.track).doubts)
     if read.conditions is None:
         notes.append("fluid and sphere are not stated (--conditions FILE): no speeds, no St, no e_eff")
     else:
         try:
             impacts = read.impacts(args)
             notes += impacts.notes
+            doubts = impacts.doubts
         except InputError as error:  # a look is wanted most where impacts cannot be had
             notes += [str(defect) for defect in error.defects]
     view = view_of(read.track, read.conditions, impacts)
     table = None if impacts is None else impacts.table()
-    contents = pages(view, Told(Path(args.track).name, read.reading, notes), table)
+    told = Told(Path(args.track).name, read.reading, notes, [doubt.message for doubt in doubts])
+    contents = pages(view, told, table)
     if read.reading:
         show(f"read: {read.reading}")
     if table is not None:
         show_impacts(table, impacts.sigma, "m" if read.track.quantity == "gap" else "m/s")
     for note in notes:
         show(f"note: {note}")
+    show_doubts(doubts)
     if suffix in _FILES:
         place = Path(args.out)
         write_whole(place, contents[_FILES[suffix]])

@@ -42,6 +42,11 @@ def add_track(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--particle", metavar="ID", help="which particle or track, where the file has several")
 
 
+def add_strict(parser: argparse.ArgumentParser) -> None:
+    """``--strict``, of commands that may doubt their input."""
+    parser.add_argument("--strict", action="store_true", help="refuse input that is doubtful: exit status 2")
+
+
 def check_track_columns(columns: Iterable[tuple[str, str]]) -> None:
     """Refuse names that are no columns of a track."""
     from restitution.errors import Defect, InputError

@@ -45,6 +45,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="ST[,ST...]",
         help="Stokes numbers instead, by the fit's convention",
     )
+    parser.add_argument(
+        "--edge",
+        type=float,
+        metavar="H",
+        help="gap in diameters at which the film ends whose loss e_eff is to have, if another than the fit's: "
+        "converted by the point particle, for --fluid and --sphere",
+    )
     parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
     parser.add_argument(
         "--level",
@@ -85,7 +92,8 @@ def run(args: argparse.Namespace) -> None:
     import numpy as np
 
     from restitution.calibration.result.fit_result import read_fit
-    from restitution.calibration.result.prediction import predict, stokes_of
+    from restitution.calibration.result.fit_summary import speed_in_words
+    from restitution.calibration.result.prediction import predict, predict_at, stokes_of
     from restitution.errors import InputError
 
     result = read_fit(args.fit)
@@ -101,7 +109,17 @@ def run(args: argparse.Namespace) -> None:
         low, high = result.stokes_range
         speeds = np.array(args.speed) if args.speed else np.geomspace(low, high, 8) / per_speed
         St = speeds * per_speed
-    prediction = predict(result, St, args.e_dry, conditions, dict(args.level))
+    edge = result.edge_d if args.edge is None else args.edge
+    if edge == result.edge_d:
+        prediction = predict(result, St, args.e_dry, conditions, dict(args.level))
+    elif conditions is None:
+        raise InputError(
+            f"--edge {edge:g}: the fit is of {result.edge_d:g} d; the conversion needs --fluid and --sphere, or "
+            "--conditions FILE"
+        )
+    else:
+        speeds = St / stokes_of(result, np.ones(1), conditions)[0]
+        prediction = predict_at(result, speeds, edge, conditions, args.e_dry, dict(args.level))
     rows = []
     for i, x in enumerate(St):
         ends = [
@@ -117,7 +135,10 @@ def run(args: argparse.Namespace) -> None:
         *(f"law, {x}" for x in prediction.law),
         *(f"one impact, {x}" for x in prediction.impact),
     )
-    show(f"{result.law.text}; Stokes number {result.stokes_convention}, speed {result.speed_definition}")
+    said = speed_in_words(result)
+    if edge != result.edge_d:
+        said += f"; converted to an edge of {edge:g} d, speeds included"
+    show(f"{result.law.text}; Stokes number {result.stokes_convention}, speed {said}")
     show_rows(headings if speeds is None else ("speed m/s", *headings), rows)
     for warning in prediction.warnings:
         print(f"warning: {warning}", file=sys.stderr)  # noqa: T201

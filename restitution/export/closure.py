@@ -66,6 +66,8 @@ class Closure:
     """Of the formula's text, names of functions as sympy knows them."""
     typical: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Two values of each variable but the first that mean something: of the law's own check values."""
+    edge: float | None = None
+    """Edge of the film in diameters that the constants belong to, where one is known."""
     identity: tuple[str, ...] = ()
     interval: Callable[[NDArray, Conditions], NDArray] | None = None
     """Of a fit: low and high end of the law's 95 % interval, (n, 2), at impact speeds in m/s."""

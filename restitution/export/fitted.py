@@ -122,6 +122,7 @@ def fit_closure(path: str | Path, levels: Mapping[str, str] | None = None) -> Cl
         constants=constants,
         convention=result.law.convention,
         speed=Speed(result.speed_definition),
+        edge=result.edge_d if result.speed_definition == Speed.FAR else None,
         validity=(result.stokes_range[0] * low, result.stokes_range[1] * high),
         validity_source="range of the fitted data",
         reference=record.reference if record else "a formula of the user's own",
@@ -132,7 +133,12 @@ def fit_closure(path: str | Path, levels: Mapping[str, str] | None = None) -> Cl
         closed=record is None or record.formula is not None,
         upper={"e_dry": 1.0},
         functions={} if record else _FUNCTIONS,
-        identity=(f"fit: {Path(path).name} sha256 {digest}", *hashes, *(f"note: {n}" for n in result.notes)),
+        identity=(
+            f"fit: {Path(path).name} sha256 {digest}",
+            *hashes,
+            *(f"note: {n}" for n in result.notes),
+            *(f"doubt: {d}" for d in result.doubts),
+        ),
         interval=interval,
     )
 

@@ -6,12 +6,12 @@ import textwrap
 
 from restitution import __version__
 from restitution.export.closure import Closure
-from restitution.stokes import H_FILM, Speed, convention
+from restitution.stokes import Speed, convention
 
 WIDTH = 108
 """Characters of a line, before the comment sign."""
 _SPEEDS = {
-    Speed.FAR: f"of the motion outside the film, at gaps above {H_FILM:g} d, carried to the wall",
+    Speed.FAR: "of the motion outside the film, carried to the wall",
     Speed.CONTACT: "extrapolated to the instant of contact",
     Speed.WINDOW: "mean slope over a stated number of frames beside the contact",
     Speed.FILM_EDGE: "at the edge of the elastohydrodynamic film",
@@ -49,11 +49,21 @@ def _impact(closure: Closure) -> tuple[str, ...]:
         f"Stokes number: {closure.convention} = {convention(closure.convention).definition}",
         f"speed: normal relative speed, {closure.speed}: {_SPEEDS[closure.speed]}. It is that of the impact, not "
         "the instantaneous speed during contact",
+        _edge(closure),
         "mass and radius: at a wall those of the sphere, m* = m, r* = r; of two equal spheres m/2 and r/2, so "
         "that St doubles at the same relative speed; of unequal ones m1 m2/(m1+m2) and r1 r2/(r1+r2). For pairs "
         "this is lubrication theory (St ~ m* v/r*^2), not a statement of the law's source",
         "e_eff stands for the whole viscous loss: use it where nothing else resolves or models the film, "
         "or the loss is counted twice",
+    )
+
+
+def _edge(closure: Closure) -> str:
+    if closure.edge is None:
+        return "edge of the film: not stated; the wider the film e_eff stands for, the lower e_eff"
+    return (
+        f"edge of the film: {closure.edge:g} d. Within it the sphere falls freely, in and out; of another edge "
+        "the constants are others ('restitution predict --edge')"
     )
 
 

@@ -17,7 +17,7 @@ noise and the choice of window.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +27,12 @@ from restitution.conditions import Conditions
 APPROACH = (1, 2, 3, 4, 5)
 REBOUND = (5,)
 _COEFFICIENTS = 6
-MOST_FRAMES = 64
-"""Frames used at most: in a longer branch the penalty for leaving frames out would outweigh what is near."""
+MOST_SINGLE = 64
+"""Frames of a branch up to which each is a point of its own."""
+_APPROACH_POINTS, _REBOUND_POINTS = (24, 24), (8, 16)
+"""Of a longer branch: the nearest frames that are so, and the means that the others are taken together to,
+the longer the farther from the contact. Fewer after a rebound, where what is far tells less of what is
+near."""
 _MOST_WINDOWS = 24
 
 
@@ -89,29 +93,72 @@ class Prior:
 _NO_PRIOR = np.zeros(6), np.full(6, np.inf)
 
 
-def _speed(tau: NDArray, value: NDArray, quantity: str) -> float:
-    """The speed scale of a branch: the greatest among its nearest four frames."""
+def _speed(tau: NDArray, value: NDArray, sigma: NDArray, quantity: str) -> float:
+    """The speed scale of a branch: the greatest among its nearest four frames, or as many as it takes to move."""
     if quantity == "velocity":
         return float(np.max(np.abs(value[:4])))
-    return float(np.max(np.abs((value[1:4] - value[0]) / (tau[1:4] - tau[0]))))
+    steps = max((len(tau) - 1) // 3, 1)
+    way = np.abs(value[3 : 3 * steps + 1 : 3] - value[0])
+    far = np.flatnonzero(way > _SEEN * sigma[0])
+    step = int(far[0]) + 1 if len(far) else steps
+    at = slice(step, 3 * step + 1, step)
+    open_speed = math.sqrt(2) * sigma[0] / abs(tau[-1] - tau[0])  # of positions that are all the same
+    return max(float(np.max(np.abs((value[at] - value[0]) / (tau[at] - tau[0])))), open_speed)
 
 
-def average(tau: NDArray, value: NDArray, sigma: float, quantity: str, prior: Prior, rebound: bool) -> Branch:
-    """Fit all windows and orders to the frames of a branch, nearest to the contact first.
+_SEEN = 10.0
+"""How far, in errors of a frame, a sphere must have gone to tell its speed."""
 
-    ``tau`` in s from the origin, ``value`` a gap in m or a velocity in m/s; of a velocity the gap polynomial
-    without its constant is fitted. At least two frames are needed. Where no fit with four or more degrees of
-    freedom comes within twice the noise (chi^2_aug over degrees of freedom above 4), the noise is scaled up to
-    that of the best one.
+
+@dataclass(frozen=True)
+class Points:
+    """What a branch is fitted to, nearest to the contact first: single frames, or means of neighbouring ones.
+
+    ``moments`` (n, 6) are the means of tau^k over the frames of a point, tau in s from the origin, ``value`` that
+    of their gaps in m or velocities in m/s, ``sigma`` its error.
     """
-    tau, value = tau[:MOST_FRAMES], value[:MOST_FRAMES]
-    N, first = len(tau), _first(quantity)
-    normal = prior.mean(), prior.sigma(_speed(tau, value, quantity))
+
+    moments: NDArray
+    value: NDArray
+    sigma: NDArray
+
+    @property
+    def tau(self) -> NDArray:
+        """Mean time of each."""
+        return self.moments[:, 1]
+
+
+def points(tau: NDArray, value: NDArray, sigma: float, rebound: bool) -> Points:
+    """The frames of a branch: each for itself, or, of more than ``MOST_SINGLE``, the farther ones as means.
+
+    All frames of a long branch take part. Were they points of their own, the penalty for leaving frames out would
+    outweigh what is near the contact.
+    """
+    N, powers = len(tau), np.arange(_COEFFICIENTS)
+    begins = np.arange(N)
+    if N > MOST_SINGLE:
+        single, means = _REBOUND_POINTS if rebound else _APPROACH_POINTS
+        farther = np.rint(np.geomspace(single, N, means + 1)).astype(int)[:-1]
+        begins = np.unique(np.concatenate([np.arange(single), farther]))
+    n = np.diff(np.append(begins, N))
+    moments = np.add.reduceat(tau[:, None] ** powers, begins, axis=0) / n[:, None]
+    return Points(moments, np.add.reduceat(value, begins) / n, sigma / np.sqrt(n))
+
+
+def average(branch: Points, quantity: str, prior: Prior, rebound: bool) -> Branch:
+    """Fit all windows and orders to the points of a branch.
+
+    Of velocities the gap polynomial without its constant is fitted. At least two points are needed. Where no
+    fit with four or more degrees of freedom comes within twice the noise (chi^2_aug over degrees of freedom
+    above 4), the noise is scaled up to that of the best one.
+    """
+    N, first = len(branch.value), _first(quantity)
+    normal = prior.mean(), prior.sigma(_speed(branch.tau, branch.value, branch.sigma, quantity))
     orders = REBOUND if rebound else APPROACH
     coefficients, roots, misfit, unknowns, windows = [], [], [], [], []
     for p in orders:
         lengths = _windows(2 - first, N)  # gap and velocity have no prior, so they need that many frames
-        c, root, chi2 = _fit(tau, value, lengths, sigma, quantity, p, normal)
+        c, root, chi2 = _fit(branch, lengths, quantity, p, normal)
         coefficients.append(c)
         roots.append(root)
         misfit.append(chi2)
@@ -122,38 +169,35 @@ def average(tau: NDArray, value: NDArray, sigma: float, quantity: str, prior: Pr
     tested = free >= 4
     scale = np.min(misfit[tested] / free[tested], initial=np.inf)
     if 4 < scale < np.inf:  # no polynomial describes the frames within twice the noise: it is larger
-        return average(tau, value, sigma * np.sqrt(scale) * (1 + 1e-6), quantity, prior, rebound)
+        noisier = replace(branch, sigma=branch.sigma * np.sqrt(scale) * (1 + 1e-6))
+        return average(noisier, quantity, prior, rebound)
     aic = misfit + 2 * unknowns + 2 * (N - windows)
     weights = np.exp(-0.5 * (aic - aic.min()))
-    reaches = np.maximum.accumulate(np.abs(tau))[windows - 1]
+    reaches = np.maximum.accumulate(np.abs(branch.tau))[windows - 1]
     return Branch(np.concatenate(coefficients), np.concatenate(roots), weights / weights.sum(), reaches)
 
 
-def line(tau: NDArray, value: NDArray, sigma: float, quantity: str) -> Branch:
-    """The straight line through all frames by least squares: the mean slope, no average, no prior."""
-    everything = np.array([len(tau)])
-    coefficients, roots, _ = _fit(tau, value, everything, sigma, quantity, 1, _NO_PRIOR)
-    return Branch(coefficients, roots, np.ones(1), np.max(np.abs(tau), keepdims=True))
+def line(branch: Points, quantity: str) -> Branch:
+    """The straight line through all points by least squares: the mean slope, no average, no prior."""
+    everything = np.array([len(branch.value)])
+    coefficients, roots, _ = _fit(branch, everything, quantity, 1, _NO_PRIOR)
+    return Branch(coefficients, roots, np.ones(1), np.max(np.abs(branch.tau), keepdims=True))
 
 
 def _fit(
-    tau: NDArray,
-    value: NDArray,
-    windows: NDArray,
-    sigma: float,
-    quantity: str,
-    p: int,
-    prior: tuple[NDArray, NDArray],
+    branch: Points, windows: NDArray, quantity: str, p: int, prior: tuple[NDArray, NDArray]
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Least-squares polynomials of order p over the windows: coefficients, covariance roots, chi^2_aug."""
     used = slice(_first(quantity), p + 1)
-    powers = np.arange(_COEFFICIENTS)[used]
-    # Fitted in units of the window, for the conditioning; frames outside a window get no weight.
-    scale = np.maximum.accumulate(np.abs(tau))[windows - 1][:, None]
+    powers, value = np.arange(_COEFFICIENTS)[used], branch.value
+    # Fitted in units of the window, for the conditioning; points outside a window get no weight.
+    scale = np.maximum.accumulate(np.abs(branch.tau))[windows - 1][:, None]
     scale[scale == 0] = 1.0
-    x = (tau / scale)[:, :, None]
-    design = x**powers if quantity == "gap" else powers * x ** (powers - 1) / scale[:, :, None]
-    inside = (np.arange(len(tau)) < windows[:, None]) / sigma
+    of = powers if quantity == "gap" else powers - 1
+    design = branch.moments[:, of] / scale[:, :, None] ** of
+    if quantity == "velocity":
+        design *= powers / scale[:, :, None]
+    inside = (np.arange(len(value)) < windows[:, None]) / branch.sigma
     unscale = scale ** -powers.astype(float)
     A = np.concatenate(
         [inside[:, :, None] * design, np.eye(len(powers)) * (unscale / prior[1][used])[:, None]], axis=1

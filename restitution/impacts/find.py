@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
-from restitution.errors import Defect, InputError
+from restitution.doubts import Doubt, cleaned, of_track
+from restitution.errors import InputError
 from restitution.impacts.speed import SpeedMeasure, Speeds, UnresolvedError
 from restitution.stokes import H_FILM, Speed, convention
-from restitution.tracks import DETECTION, Contact, Contacts, Track, contacts
+from restitution.tracks import DETECTION, Contact, Contacts, Track, begins_on_rebound, contacts
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Impacts:
-    """Rows of the impact table, the noise that was used, and what could not be evaluated and why.
+    """Rows of the impact table, the noise that was used, what could not be evaluated and why, what is doubtful.
 
     ``contacts`` are those that were evaluated by ``measure``, in order: impact 1, 2, ...
     """
@@ -36,6 +37,7 @@ class Impacts:
     notes: list[str]
     contacts: list[Contact] = field(repr=False)
     measure: SpeedMeasure = field(repr=False)
+    doubts: list[Doubt] = field(default_factory=list)
 
     def table(self) -> pd.DataFrame:
         """The rows as a table with the columns of the impact schema."""
@@ -66,7 +68,7 @@ def find_impacts(
     Parameters
     ----------
     track : positions or velocities in time.
-    conditions : fluid and sphere; ``sphere.e_dry`` must be stated.
+    conditions : fluid and sphere; where ``sphere.e_dry`` is not stated its column stays empty.
     speed : definition of the impact speed, "far", "contact" or "window".
     stokes : convention of the St reported, a key of :mod:`restitution.stokes`.
     record, kind : name and kind ("measured", "simulated") that every row carries.
@@ -76,22 +78,23 @@ def find_impacts(
 
     Returns
     -------
-    Rows in the schema of impacts; a contact that cannot be evaluated gives no row but a note.
+    Rows in the schema of impacts; a contact that cannot be evaluated gives no row but a note. Frames that no
+    flight passes through are left out. What contradicts the conditions is in ``doubts``.
 
     Raises
     ------
-    InputError : where e_dry is not stated, or the track has too few frames.
+    InputError : where the numbers of the track are too large to compute with.
     """
-    if conditions.sphere.e_dry is None:
-        raise InputError(Defect("must be stated: impacts are compared by e_eff / e_dry", field="sphere.e_dry"))
     if not np.isfinite(track.sigma):
         raise InputError("the numbers of the track are too large to compute with: wrong unit?")
-    found = contacts(track)
+    clean = cleaned(track, record)
+    track, found = clean.track, contacts(clean.track)
     level = found.level or 0.0
     measure = SpeedMeasure(
         track, conditions, Speed(speed), window_frames, h_film * conditions.sphere.diameter, level
     )
-    rows, notes = [], _remarks(track, conditions, found)
+    rows, notes = [], _remarks(track, found)
+    edge = h_film if Speed(speed) is Speed.FAR else None
     touches = _with_quoted_first(track, conditions, found, notes)
     for i, contact in enumerate(touches):
         try:
@@ -102,37 +105,24 @@ def find_impacts(
             when = f"{t:.4g}" if abs(t) < 100 else f"{t:.4f}"  # a computer's clock needs all its digits
             notes.append(f"impact {i + 1}, near t = {when} s: {reason}")
             continue
-        rows.append({"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, stokes))
-    return Impacts(rows, track.sigma, notes, touches, measure)
+        rows.append(
+            {"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, edge, stokes)
+        )
+    doubts = [*clean.doubts, *of_track(track, found, conditions, record)]
+    return Impacts(rows, track.sigma, notes, touches, measure, doubts)
 
 
-def _remarks(track: Track, conditions: Conditions, found: Contacts) -> list[str]:
-    """What about a track makes one doubt its unit or its zero."""
-    d, remarks = conditions.sphere.diameter, []
-    if track.quantity == "gap" and np.min(track.value) > 0.2 * d:
-        remarks.append(
-            f"the gap never falls below {np.min(track.value):.3g} m, {np.min(track.value) / d:.2g} d: "
-            "is it the height of the centre? It must be that of the lowest point (--point centre)"
-        )
-    fastest = np.max(np.abs(np.diff(track.value) / np.diff(track.time_s)), initial=0.0)
-    if track.quantity == "gap" and not 1e-3 < fastest < 30:
-        remarks.append(
-            f"the greatest speed in the track is {fastest:.2g} m/s: are the units right (--unit, --time-unit)?"
-        )
-    if found.level is not None and abs(found.level) > DETECTION * track.sigma:
-        remarks.append(f"the sphere rests at a gap of {found.level:.3g} m: gaps are counted from there")
-    return remarks
+def _remarks(track: Track, found: Contacts) -> list[str]:
+    """How a track was taken where it does not say so itself."""
+    if found.level is None or abs(found.level) <= DETECTION * track.sigma:
+        return []
+    return [f"the sphere rests at a gap of {found.level:.3g} m: gaps are counted from there"]
 
 
 def _with_quoted_first(track: Track, conditions: Conditions, found: Contacts, notes: list[str]) -> list[Contact]:
     """The contacts, preceded by the one before the first frame if the record begins on a rebound."""
     end = found.contacts[0].approach.stop if found.contacts else len(track.time_s)
-    flight, limit = track.value[:end], DETECTION * track.sigma
-    if track.quantity == "gap":
-        # rising at once, not lifted some time after the record begins
-        rising = end >= 3 and flight[2] - flight[0] > limit / 2 and np.max(flight) - flight[0] > limit
-    else:
-        rising = end >= 3 and flight[0] > limit
+    rising = begins_on_rebound(track, found)
     if rising and conditions.impact is not None:
         return [Contact(range(0), None, range(end)), *found.contacts]
     if rising:
@@ -142,13 +132,14 @@ def _with_quoted_first(track: Track, conditions: Conditions, found: Contacts, no
     return found.contacts
 
 
-def _row(found: Speeds, conditions: Conditions, speed: Speed | str, stokes: str) -> dict:
+def _row(found: Speeds, conditions: Conditions, speed: Speed | str, edge: float | None, stokes: str) -> dict:
     per_speed = convention(stokes).per_speed(conditions)
     v_in, v_in_sigma = _summary(found.v_in)
     row = {
         "outcome": "rebound" if found.v_out is not None else "not_resolved",
         "time_s": _summary(found.time_s)[0],
         "speed_definition": str(Speed(speed)),
+        "film_edge_d": edge,
         "impact_speed_m_s": v_in,
         "impact_speed_sigma_m_s": v_in_sigma,
         "stokes_convention": stokes,

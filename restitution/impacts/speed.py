@@ -28,7 +28,7 @@ from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
-from restitution.impacts.branch import Branch, Prior, average, line
+from restitution.impacts.branch import Branch, Prior, average, line, points
 from restitution.stokes import Speed
 from restitution.tracks import DETECTION, Contact, Track
 
@@ -106,8 +106,11 @@ class SpeedMeasure:
             if reason.branch == "approach" or np.argmax(self.track.value[contact.rebound]) + 1 == len(after):
                 raise
             return self._limited(contact, str(reason), rng)
-        scale = self._scale(rng)
-        return Speeds(t_c, scale * v_in, scale * v_out, None, "")
+        scale, note = self._scale(rng), ""
+        if self.track.quantity == "velocity" and _lasts(before[0], after[0]):
+            between = self.track.time_s[after[0]] - self.track.time_s[before[0]]
+            note = f"contact lasts {1e3 * between:.2g} ms: its {after[0] - before[0] - 1} frames left out"
+        return Speeds(t_c, scale * v_in, scale * v_out, None, note)
 
     def branches(self, contact: Contact) -> list[ReadBranch]:
         """What approach and rebound were read as, where the sampling resolves them, without the open frame."""
@@ -131,6 +134,7 @@ class SpeedMeasure:
     def _meet(self, before: list[int], after: list[int], rng: np.random.Generator) -> tuple[NDArray, ...]:
         """Draws of the contact time, the speed of the approach and that of the rebound."""
         low, high = self.track.time_s[before[0]], self.track.time_s[after[0]]
+        lasts = _lasts(before[0], after[0])
         overlap = self.track.quantity == "gap" and self._touching([*before[:2], *after[:2]]).any()
         before, after = self._usable(before, "approach"), self._usable(after, "rebound")
         origin = 0.5 * (low + high)
@@ -139,16 +143,22 @@ class SpeedMeasure:
             self._fit(after, origin, True).draw(DRAWS, rng),
         )
         if self.track.quantity == "velocity":
-            tau = rng.uniform(low - origin, high - origin, DRAWS)  # velocities do not say where between two frames
-        elif overlap:  # a contact that lasts: each branch ends where its own gap does
+            tau = left = rng.uniform(
+                low - origin, high - origin, DRAWS
+            )  # velocities do not say where between frames
+            if lasts:
+                beside = 2 * float(np.median(np.diff(self.track.time_s)))
+                tau = low - origin + rng.uniform(0, beside, DRAWS)
+                left = high - origin - rng.uniform(0, beside, DRAWS)
+            return origin + tau, -_slope(incoming, tau), _slope(outgoing, left)
+        if overlap:  # a contact that lasts: each branch ends where its own gap does
             incoming[:, 0] -= self.level
             outgoing[:, 0] -= self.level
             tau, left = _root(incoming, np.zeros(DRAWS)), _root(outgoing, np.zeros(DRAWS))
             return origin + tau, -_slope(incoming, tau), _slope(outgoing, left)
-        else:
-            tau = _root(incoming - outgoing, np.zeros(DRAWS))
-            # Far from the frames that were fitted on both sides the branches do not meet.
-            tau[np.abs(tau) > self.track.time_s[after[0]] - self.track.time_s[before[0]]] = np.nan
+        tau = _root(incoming - outgoing, np.zeros(DRAWS))
+        # Far from the frames that were fitted on both sides the branches do not meet.
+        tau[np.abs(tau) > self.track.time_s[after[0]] - self.track.time_s[before[0]]] = np.nan
         return origin + tau, -_slope(incoming, tau), _slope(outgoing, tau)
 
     def _usable(self, frames: list[int], branch: str) -> NDArray:
@@ -184,9 +194,10 @@ class SpeedMeasure:
 
     def _fit(self, frames: NDArray, origin: float, rebound: bool) -> Branch:
         t, y = self.track.time_s[frames], self.track.value[frames]
+        branch = points(t - origin, y, self.track.sigma, rebound)
         if self.speed is Speed.WINDOW:
-            return line(t - origin, y, self.track.sigma, self.track.quantity)
-        return average(t - origin, y, self.track.sigma, self.track.quantity, Prior.of(self.conditions), rebound)
+            return line(branch, self.track.quantity)
+        return average(branch, self.track.quantity, Prior.of(self.conditions), rebound)
 
     def _alone(self, frames: list[int], branch: str, rng: np.random.Generator) -> tuple[NDArray, float]:
         """Draws of a branch whose other side is missing, and the time of its nearest frame, their origin."""
@@ -223,6 +234,11 @@ class SpeedMeasure:
             tau = np.full(DRAWS, self.track.time_s[contact.approach[-1]] + 0.5 * frame - origin)
         v_in = self._scale(rng) * _moving(-_slope(incoming, tau), "approach")
         return Speeds(origin + tau, v_in, None, float(highest), f"rebound not resolved: {reason}")
+
+
+def _lasts(last: int, first: int) -> bool:
+    """Whether more than a frame lies between the last one of an approach and the first one of its rebound."""
+    return first - last > 3
 
 
 def _moving(speed: NDArray, branch: str) -> NDArray:

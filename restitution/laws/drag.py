@@ -6,11 +6,15 @@ history laws.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 
+from restitution.conditions import Conditions
+from restitution.errors import Defect, InputError
 from restitution.laws.base import CheckValue, Law, Status
 
 _FLUIDS = "public package 'fluids' 1.x, fluids.drag, evaluated independently"
@@ -152,3 +156,24 @@ def steady(law: DragLaw, weight: float, diameter: float, density: float, viscosi
 
     stokes = np.log(weight / (3 * np.pi * viscosity * diameter))
     return float(np.exp(brentq(excess, stokes - 20, stokes + 1, xtol=1e-14, rtol=1e-14)))
+
+
+def excess_weight(conditions: Conditions) -> float:
+    """Gravity less buoyancy in N; raises :class:`InputError` for a sphere that does not sink."""
+    ratio = conditions.sphere.density / conditions.fluid.density
+    if not ratio > 1:
+        raise InputError(
+            Defect("is the density ratio sphere to fluid; only a sphere heavier than the fluid falls on the wall",
+                   field="sphere.density / fluid.density", value=f"{ratio:g}")
+        )  # fmt: skip
+    volume = math.pi * conditions.sphere.diameter**3 / 6
+    return (conditions.sphere.density - conditions.fluid.density) * volume * conditions.gravity
+
+
+@lru_cache(maxsize=256)
+def terminal_speed(conditions: Conditions, drag: DragLaw | None = None) -> float:
+    """The steady speed in m/s far from walls at which ``drag`` balances gravity less buoyancy."""
+    c = conditions
+    return steady(
+        drag or SchillerNaumann1935(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity
+    )

@@ -3,8 +3,9 @@
     e_eff = v_out / v_in,   0 <= e_eff <= e_dry,   e_eff -> e_dry as St -> infinity,
 
 v_in and v_out being the normal speeds of the sphere before and after the impact by one and the same
-definition (:class:`restitution.stokes.Speed`). This module is what all rebound laws share; the laws
-themselves stand in the modules beside it.
+definition (:class:`restitution.stokes.Speed`), those of the motion outside the film for one edge of it: the same
+frames want K of Eq. (4) to be 8.9 for an edge of 0.05 d and 14.8 for 0.3 d (``python -m benchmarks.film_edges``).
+This module is what all rebound laws share; the laws themselves stand in the modules beside it.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ class ReboundLaw(Law):
     convention: ClassVar[str] = "st"
     speed: ClassVar[Speed] = Speed.UNSTATED
     """The impact speed its source means; ``unstated`` takes any."""
+    edge: ClassVar[float | None] = None
+    """Edge of the film, in diameters, that its constants belong to; None: unstated, and taken at any edge."""
 
     def __call__(
         self,

@@ -14,8 +14,10 @@ from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
 from restitution.calibration.estimation.maximum import LEVELS, Maximum, Thresholds, maximise
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.estimation.small_sample import Restriction, threshold
+from restitution.calibration.reading.impact_checks import doubts_about
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.showing import Showing, Table, counted
+from restitution.doubts import Doubt
 
 
 @dataclass(frozen=True, repr=False)
@@ -28,6 +30,11 @@ class Fit(Showing):
     freedom: NDArray
     restricted: bool
     notes: tuple[str, ...]
+
+    @property
+    def doubts(self) -> tuple[Doubt, ...]:
+        """What is doubtful about the impacts."""
+        return doubts_about(self.likelihood.observations, self.plan.known_e_dry)
 
     def shown(self) -> Table:
         """The estimates with their standard errors; intervals and all else are in its result."""

@@ -38,6 +38,13 @@ class Plan:
     offsets: bool | None = None
     robust: bool = False
 
+    @property
+    def known_e_dry(self) -> float | None:
+        """The number that e_dry is held at or expected to be, where it is one."""
+        given = self.fixed.get("e_dry", self.priors.get("e_dry", self.e_dry))
+        mean = given.mean if isinstance(given, Normal) else given
+        return None if isinstance(mean, str) else mean
+
     def likelihood(self, observations: Observations) -> Likelihood:
         """The likelihood of the observations under this plan; refuses what cannot be fitted."""
         self._known_names()

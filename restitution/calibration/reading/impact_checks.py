@@ -14,7 +14,9 @@ import numpy as np
 
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.reading.reading import Reading
+from restitution.doubts import Doubt, of_impacts
 from restitution.errors import Defect, InputError
+from restitution.stokes import H_FILM, film_edge
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,7 +63,7 @@ class TableCheck:
         for i in np.flatnonzero(where):
             self._add(rule, i, name, None if values is None else f"{values[i]:g}")
 
-    def definition(self, column: str, given: str | None, option: str) -> str | None:
+    def definition(self, column: str, given: Any, option: str) -> Any:
         """The one value of a column that states a definition, or the caller's; None where nobody states it."""
         stated = self.table[column].dropna()
         if stated.empty:
@@ -86,6 +88,12 @@ class TableCheck:
         if speed is None:
             self._add(NO_SPEED, None, None)
         return speed
+
+    def edge(self) -> float:
+        """The edge of the film in diameters that the table, or the caller, states; else that of the package."""
+        given = None if self.how.edge is None else film_edge(self.how.edge, "--edge")
+        stated = self.definition("film_edge_d", given, "--edge")
+        return H_FILM if stated is None else float(stated)
 
     def stokes(self, conditions: Sequence) -> str:
         """The Stokes convention; St must be given under it, or follow from the impact speed and conditions."""
@@ -130,6 +138,23 @@ def check_physical(o: Observations, how: Reading) -> Observations:
     if defects:
         raise InputError(*defects)
     return o
+
+
+def doubts_about(o: Observations, e_dry: float | None = None) -> tuple[Doubt, ...]:
+    """What is doubtful about impacts: about their records, and whether the film takes what it takes elsewhere.
+
+    ``e_dry`` is taken where the impacts do not state it.
+    """
+    try:
+        St = o.St * o.ratio_to("st")
+    except InputError:  # fluid and sphere are not known: near enough, but for a factor that all conventions state
+        St = o.St
+    dry = np.where(np.isfinite(o.e_dry), o.e_dry, _TYPICAL_E_DRY if e_dry is None else e_dry)
+    return (*o.doubts, *of_impacts(St, o.e, dry, tuple(o.files)))
+
+
+_TYPICAL_E_DRY = 0.97
+"""Of steel and glass, where nobody states it."""
 
 
 def _outside(e: np.ndarray) -> np.ndarray:

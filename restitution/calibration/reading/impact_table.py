@@ -44,7 +44,7 @@ def from_table(
     none = table["outcome"].isin(WITHOUT_REBOUND).to_numpy(bool)
     check = TableCheck(table, how, file, rows, form_defects)
     check.errors()
-    speed, stokes = check.speed(), check.stokes(per_row)
+    speed, stokes, edge = check.speed(), check.stokes(per_row), check.edge()
     e = _restitution(table)
     check.restitution(e, none)
     if check.defects:
@@ -59,7 +59,7 @@ def from_table(
     )
     read = table.assign(
         source=table["source"].fillna(table["record"]).fillna(Path(file).stem),
-        stokes=St, stokes_sigma=St_sigma, stokes_convention=stokes, speed_definition=speed,
+        stokes=St, stokes_sigma=St_sigma, stokes_convention=stokes, speed_definition=speed, film_edge_d=edge,
         e_eff=e, e_eff_sigma=e_sigma, e_stokes_correlation=correlation,
     )  # fmt: skip
     places = tuple((file, int(row)) for row in rows)

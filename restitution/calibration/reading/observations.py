@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Conditions
+from restitution.doubts import Doubt
 from restitution.errors import ConventionError, Defect, InputError
-from restitution.stokes import Speed, StokesNumber
+from restitution.stokes import H_FILM, Speed, StokesNumber, film_edge
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +27,7 @@ _GROUPS = ("material", "record")
 _TEXTS = ("source", *_GROUPS, "kind", "outcome", "speed_definition", "stokes_convention")
 _NUMBERS = (
     "stokes", "stokes_sigma", "e_dry", "e_dry_sigma", "e_eff", "e_eff_sigma", "e_stokes_correlation",
-    "e_eff_upper",
+    "e_eff_upper", "film_edge_d",
 )  # fmt: skip
 
 
@@ -52,11 +53,15 @@ class Observations(Showing):
     convention: str
     speed: Speed
     conditions: tuple[Conditions | None, ...]
+    edge: float | None = None
+    """Of the film in diameters, outside which the speeds are those of the motion; of the speed ``far`` alone."""
     places: tuple[tuple[str, int], ...] = ()
     """File and row of each impact."""
     files: Mapping[str, str] = field(default_factory=dict)
     """sha256 of each file."""
     notes: tuple[str, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
+    """About the records that they come from."""
     simulated: bool = False
     """Whether they come from a simulation; such ones are never joined with measured ones."""
 
@@ -69,6 +74,7 @@ class Observations(Showing):
         places: tuple[tuple[str, int], ...] = (),
         files: Mapping[str, str] | None = None,
         notes: tuple[str, ...] = (),
+        doubts: tuple[Doubt, ...] = (),
     ) -> Observations:
         """Impacts in the columns of the impact table, as :func:`restitution.impacts.find_impacts` gives them.
 
@@ -108,9 +114,11 @@ class Observations(Showing):
             speed=Speed(_the_one(table["speed_definition"])),
             simulated=_the_one(table["kind"].fillna("measured")) == "simulated",
             conditions=per_row,
+            edge=_edge(table),
             places=places,
             files=dict(files or {}),
             notes=notes,
+            doubts=doubts,
         )
 
     def shown(self) -> Table:
@@ -121,7 +129,8 @@ class Observations(Showing):
             here, seen = self.St[group == i], ~self.censored[group == i]
             rows.append((name, f"{seen.sum()}", f"{(~seen).sum()}", f"{here.min():.3g} to {here.max():.3g}"))
         kind = "simulated impact" if self.simulated else "impact"
-        title = f"{counted(len(self), kind)}, Stokes number {self.convention}, impact speed {self.speed}"
+        edge = f", edge of the film {self.edge:g} d" if self.edge is not None else ""
+        title = f"{counted(len(self), kind)}, Stokes number {self.convention}, impact speed {self.speed}{edge}"
         return Table(title, ("source", "with a rebound", "without", "St"), rows)
 
     def __len__(self) -> int:
@@ -194,6 +203,13 @@ def _the_one(column: pd.Series) -> str:
     return str(stated[0])
 
 
+def _edge(table: pd.DataFrame) -> float | None:
+    """The one edge of the film of impacts under the speed ``far``; where they state none that of the package."""
+    if _the_one(table["speed_definition"]) != Speed.FAR:
+        return None
+    return film_edge(float(_the_one(table["film_edge_d"].fillna(H_FILM))), "film_edge_d")
+
+
 def _converted(o: Observations, key: str) -> Observations:
     """The same impacts under another definition of the Stokes number; some need fluid and sphere for that."""
     if o.convention == key:
@@ -224,6 +240,12 @@ def join(parts: list[Observations]) -> Observations:
             rule = f"speed differs from {first.speed} of {next(iter(first.files), 'the first file')}"
             file = next(iter(other.files), None)
             raise InputError(Defect(f"{rule}: fit data of one definition", file=file, value=str(other.speed)))
+        if other.edge != first.edge:
+            rule = (
+                f"has the film end at {other.edge:g} d, {next(iter(first.files), 'the first file')} at "
+                f"{first.edge:g} d: e_eff of different edges are different quantities; fit data of one"
+            )
+            raise InputError(Defect(rule, file=next(iter(other.files), None), field="film_edge_d"))
     names = dict.fromkeys(name for part in parts for name in part.labels)
     labels = {
         name: np.concatenate([p.labels.get(name, np.full(len(p), "", object)) for p in parts]) for name in names
@@ -241,4 +263,5 @@ def join(parts: list[Observations]) -> Observations:
         places=tuple(x for p in parts for x in p.places),
         files={name: digest for p in parts for name, digest in p.files.items()},
         notes=tuple(dict.fromkeys(note for p in parts for note in p.notes)),
+        doubts=tuple(dict.fromkeys(doubt for p in parts for doubt in p.doubts)),
     )

@@ -23,6 +23,9 @@ class Reading:
 
     stokes: str | None = None
     speed: Speed | None = None
+    edge: float | None = None
+    """Of the film in diameters, for the speed ``far``; None: the files state it, or it is
+    :data:`~restitution.stokes.H_FILM`."""
     columns: Mapping[str, str] = field(default_factory=dict)
     conditions: Conditions | None = None
     unphysical: bool = False

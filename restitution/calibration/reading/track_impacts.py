@@ -14,7 +14,7 @@ from restitution.errors import Defect, InputError
 from restitution.foreign.table import ForeignTable
 from restitution.foreign.track import read_track
 from restitution.impacts.find import find_impacts
-from restitution.stokes import MEASURED_SPEEDS
+from restitution.stokes import H_FILM, MEASURED_SPEEDS, film_edge
 from restitution.tables.reading import read_table
 from restitution.tables.schema import read_schema
 from restitution.tracks import Track
@@ -45,15 +45,19 @@ def from_track(track: Track, conditions: Conditions, how: Reading, name: str, di
             )
         )
     stokes = how.stokes or "st"
-    impacts = find_impacts(track, conditions, how.speed, stokes, Path(name).stem)
+    edge = H_FILM if how.edge is None else film_edge(how.edge, "--edge")
+    impacts = find_impacts(track, conditions, how.speed, stokes, Path(name).stem, h_film=edge)
+    doubts = tuple(replace(doubt, where=name) for doubt in impacts.doubts)
     if not impacts.rows:
-        raise InputError(Defect("no impact is resolved in this track", file=name))
+        rule = "; ".join(["no impact is resolved in this track", *(doubt.message for doubt in doubts)])
+        raise InputError(Defect(rule, file=name))
     o = Observations.from_impacts(
         impacts.rows,
         conditions,
         places=tuple((f"{name}, impact", int(row["impact"])) for row in impacts.rows),
         files={name: digest},
         notes=tuple(f"{name}: {note}" for note in impacts.notes),
+        doubts=doubts,
     )
     return check_physical(o, how)
 

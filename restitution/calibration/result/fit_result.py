@@ -19,6 +19,7 @@ from restitution.calibration.estimation.rebound_model import LawModel, ReboundMo
 from restitution.calibration.result.residuals import Goodness, Point, goodness_of, number_or_none, points_of
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Record
+from restitution.stokes import H_FILM
 from restitution.tables.schema import read_record
 
 FORMAT = "restitution-fit/1"
@@ -110,6 +111,10 @@ class FitResult(Showing, Record):
     law: LawRecord
     stokes_convention: str
     speed_definition: str
+    edge_d: float | None = H_FILM
+    """Edge of the film in diameters, to which the parameters belong; null of speeds that know none.
+
+    A file without it was written when there was no other than this one."""
     fixed: dict[str, float]
     separate: dict[str, str]
     parameters: tuple[Estimated, ...]
@@ -129,6 +134,8 @@ class FitResult(Showing, Record):
     files: dict[str, str]
     versions: dict[str, str]
     notes: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
+    """What contradicts what such data must obey, with the likely mistake."""
 
     def shown(self) -> Table:
         """The parameters with their intervals; :func:`restitution.calibration.result.fit_summary.describe` says
@@ -231,6 +238,7 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         ),
         stokes_convention=o.convention,
         speed_definition=str(o.speed),
+        edge_d=o.edge,
         fixed=fixed,
         separate=dict(likelihood.separate),
         parameters=estimated,
@@ -246,6 +254,7 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         files=dict(o.files),
         versions={name: metadata.version(name) for name in _LIBRARIES},
         notes=fit.notes,
+        doubts=tuple(map(str, fit.doubts)),
     )
 
 

@@ -3,6 +3,14 @@
 from __future__ import annotations
 
 from restitution.calibration.result.fit_result import Estimated, FitResult, sources
+from restitution.stokes import Speed
+
+
+def speed_in_words(result: FitResult) -> str:
+    """The definition of the impact speed, with the edge of the film where it has one."""
+    if result.speed_definition != Speed.FAR or result.edge_d is None:
+        return result.speed_definition
+    return f"{result.speed_definition}, edge of the film {result.edge_d:g} d"
 
 
 def describe(result: FitResult) -> list[tuple[str, str]]:
@@ -11,7 +19,7 @@ def describe(result: FitResult) -> list[tuple[str, str]]:
     facts = [
         ("law", f"{result.law.name or 'own formula'}: {result.law.text}"),
         ("Stokes number", f"{result.stokes_convention} in the data, {result.law.convention} in the law"),
-        ("impact speed", result.speed_definition),
+        ("impact speed", speed_in_words(result)),
         ("impacts", f"{g.measured} with a rebound, {g.censored} without; sources: {len(sources(result))}"),
     ]
     facts += [(name, f"{value:g} (fixed)") for name, value in result.fixed.items()]
@@ -36,6 +44,7 @@ def describe(result: FitResult) -> list[tuple[str, str]]:
             ends = ", ".join(f"{level} {x[j][0]:.5g} to {x[j][1]:.5g}" for level, x in chain.intervals.items())
             facts.append((f"  {name}", f"median {chain.median[j]:.5g} ({ends}; prior {chain.priors[name]})"))
     facts += [("note", note) for note in result.notes]
+    facts += [("doubt", doubt) for doubt in result.doubts]
     return facts
 
 

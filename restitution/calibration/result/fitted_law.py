@@ -16,10 +16,11 @@ from restitution.stokes import Speed, StokesNumber
 
 @dataclass(frozen=True, eq=False)
 class FittedLaw:
-    """A law of the registry or a formula of the user's own; ``values`` by name."""
+    """A law of the registry or a formula of the user's own; ``values`` by name, for the film of ``edge``, in d."""
 
     model: ReboundModel
     values: Mapping[str, float]
+    edge: float | None = None
 
     @property
     def name(self) -> str:

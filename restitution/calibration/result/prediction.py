@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri, stdtrit
 
+from restitution.bounce.edges import passage
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.calibration.result.fit_result import FitResult, parameter_values
 from restitution.calibration.showing import Showing, Table
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
-from restitution.stokes import Speed, StokesNumber
+from restitution.stokes import Speed, StokesNumber, film_edge
 
 
 @dataclass(frozen=True, repr=False)
@@ -91,6 +92,50 @@ def predict(
         intervals = {f"{x:.0%}": _around(value, half[x]) for x in LEVELS}
         more = {f"{x:.0%}": _around(value, np.hypot(half[x], noise[x])) for x in LEVELS}
     return Prediction(St, value, sigma, intervals, more, _warnings(result, St, law.e_dry))
+
+
+def predict_at(
+    result: FitResult,
+    speed: NDArray,
+    edge: float,
+    conditions: Conditions,
+    e_dry: float | None = None,
+    levels: Mapping[str, str] | None = None,
+) -> Prediction:
+    """:func:`predict` for impact speeds in m/s at another ``edge`` of the film (diameters) than the fit's.
+
+    Each speed is carried to the fit's own edge, and value and ends of the intervals back from it
+    (:mod:`restitution.bounce.edges`); ``sigma`` is half the law's 68 % interval. ``stokes`` is that of the speeds.
+
+    Raises
+    ------
+    InputError : as :func:`predict`, and for a fit to speeds that know no edge.
+    """
+    edge = film_edge(edge, "--edge")
+    own = result.edge_d
+    if result.speed_definition != Speed.FAR or own is None:
+        rule = (
+            f"is a convention of the speed far; the fit is of the speed {result.speed_definition}: fit it by far"
+        )
+        raise InputError(Defect(rule, field="--edge", value=f"{edge:g}"))
+    passages = [passage(conditions, float(v), edge, own) for v in np.atleast_1d(speed)]
+    wider = own < edge
+    there = predict(
+        result,
+        stokes_of(result, np.array([p.v_narrow if wider else p.v_wide for p in passages]), conditions),
+        e_dry, conditions, levels,
+    )  # fmt: skip
+
+    def here(e: NDArray) -> NDArray:
+        ends = np.clip(e, 0.0, 1.0)
+        return np.array([p.widened(x) if wider else p.narrowed(x) for p, x in zip(passages, ends, strict=True)])
+
+    def both(table: Mapping[str, NDArray]) -> dict[str, NDArray]:
+        return {level: np.stack([here(ends[:, 0]), here(ends[:, 1])], axis=1) for level, ends in table.items()}
+
+    law, St = both(there.law), stokes_of(result, np.atleast_1d(speed), conditions)
+    sigma = np.diff(law["68%"], axis=1)[:, 0] / 2
+    return Prediction(St, here(there.value), sigma, law, both(there.impact), there.warnings)
 
 
 def stokes_of(result: FitResult, speed: NDArray, conditions: Conditions) -> NDArray:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from restitution.calibration.estimation.fitting import Fit
+from restitution.doubts import Doubt
 
 if TYPE_CHECKING:
     from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory
@@ -20,28 +21,32 @@ NOISES = 5.0
 """Errors of reading from which on the correlated noise is one."""
 
 
-def in_words(trajectories: Sequence[WholeTrajectory], fit: Fit, slopes: Fit | str) -> list[str]:
-    """Everything that is doubtful; nothing where nothing is."""
-    return [*_records(trajectories), *_parameters(fit, slopes), *_bounces(trajectories)]
-
-
-def _records(trajectories: Sequence[WholeTrajectory]) -> Iterator[str]:
+def of_records(trajectories: Sequence[WholeTrajectory]) -> Iterator[Doubt]:
+    """Records that the model does not follow, law or no law; and what was doubtful before it was tried."""
     for t in trajectories:
         r = t.recording
+        yield from r.doubts
         scale, _ = t.unknowns["scale"]
         if abs(scale - 1) > SCALES * r.scale:
-            yield (
-                f"doubt: the gaps of {r.name} meet the model only scaled by {scale:.3f}: the scale of the record "
-                "or the forces of the model are off, and e with them"
+            yield Doubt(
+                "scale",
+                f"the gaps meet the model only scaled by {scale:.3f}: the scale of the record (--unit, "
+                "--pixel) or the "
+                "forces of the model are off, and e with them",
+                r.name,
             )
         if t.sigma_u[0] > NOISES * r.sigma:
-            yield (
-                f"doubt: {r.name} departs from the model by {t.sigma_u[0] / r.sigma:.0f} times the error of "
-                "reading, over several frames: what a wrong drag or history law does to e is not in the intervals"
+            yield Doubt(
+                "model",
+                f"the record departs from the model by {t.sigma_u[0] / r.sigma:.0f} times the error of "
+                "reading, over "
+                "several frames: what a wrong drag or history law does to e is not in the intervals (of a solver "
+                "without history force, 'restitution impacts' needs no model)",
+                r.name,
             )
 
 
-def _parameters(fit: Fit, slopes: Fit | str) -> Iterator[str]:
+def of_parameters(fit: Fit, slopes: Fit | str) -> Iterator[Doubt]:
     """Parameters whose 68 % intervals by whole trajectories and by slopes do not overlap."""
     if isinstance(slopes, str):
         return
@@ -51,13 +56,14 @@ def _parameters(fit: Fit, slopes: Fit | str) -> Iterator[str]:
             continue
         (low, high), (a, b) = fit.maximum.intervals[0.68][j], others[p.name]
         if high < a or low > b:
-            yield (
-                f"doubt: {p.name} by whole trajectories, {low:.4g} to {high:.4g}, and by the slopes beside the "
-                f"contacts, {a:.4g} to {b:.4g}, do not overlap (68 %)"
+            yield Doubt(
+                "slopes",
+                f"{p.name} by whole trajectories, {low:.4g} to {high:.4g}, and by the slopes beside the contacts, "
+                f"{a:.4g} to {b:.4g}, do not overlap (68 %)",
             )
 
 
-def _bounces(trajectories: Sequence[WholeTrajectory]) -> Iterator[str]:
+def within_the_film(trajectories: Sequence[WholeTrajectory]) -> Iterator[str]:
     """Bounces that are modelled but tell no e outside the film."""
     for t in trajectories:
         within = [f"{n + 1}" for n, outside in enumerate(t.outside()) if not outside]

@@ -20,12 +20,15 @@ from restitution.calibration.reading.reading import Reading
 from restitution.calibration.reading.track_impacts import from_track
 from restitution.calibration.result.fit_result import FitResult, TrajectoryRecord, result_of
 from restitution.calibration.result.fitted_law import FittedLaw
-from restitution.calibration.trajectories.doubts import in_words
+from restitution.calibration.trajectories.doubts import of_parameters, of_records, within_the_film
 from restitution.calibration.trajectories.recordings import Recording
 from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory, distance_d, whole_trajectories
+from restitution.doubts import Doubt
 from restitution.errors import Defect, InputError
-from restitution.stokes import Speed
+from restitution.stokes import H_FILM, Speed, film_edge
 
+FEW = 2
+"""Rebounds up to which laws are not ranked: without one of them nothing is left that tells their scatter."""
 CLEAR = 5.0
 """Ln of the evidence by which records are said to prefer the model with or without wake; odds of 150."""
 
@@ -36,11 +39,20 @@ class Measured:
 
     records: tuple[Recording, ...]
     trajectories: dict[bool, list[WholeTrajectory]] = field(default_factory=dict)
+    edge: float = H_FILM
+    """Of the film in diameters, within which e_eff stands for every viscous force: K of a law belongs to it."""
 
     @classmethod
-    def of(cls, records: Sequence[Recording], wakes: Sequence[bool] = (False, True)) -> Measured:
-        """All records under each kind of model."""
-        return cls(tuple(records), {wake: whole_trajectories(records, wake) for wake in wakes})
+    def of(
+        cls, records: Sequence[Recording], wakes: Sequence[bool] = (False, True), edge: float = H_FILM
+    ) -> Measured:
+        """All records under each kind of model; raises :class:`InputError` for an edge out of range."""
+        edge = film_edge(edge)
+        return cls(tuple(records), {wake: whole_trajectories(records, wake, edge) for wake in wakes}, edge)
+
+    def rebounds_outside(self) -> int:
+        """How many rebounds leave the film, of all records."""
+        return sum(int(t.outside().sum()) for t in self.trajectories[self.preferred])
 
     def preference(self) -> float:
         """Ln of the evidence with wake over that without, all records; 0 where one of them was not asked for."""
@@ -59,7 +71,8 @@ def observations(trajectories: Sequence[WholeTrajectory], how: Reading) -> Obser
     """The impacts of the records for a fit, each record a source."""
     rows = [row for t in trajectories for row in t.rows(how.stokes or "st")]
     if not any(row["outcome"] == "rebound" for row in rows):
-        rule = "no bounce leaves the film, 0.1 d: nothing to fit a law to"
+        edge = trajectories[0].edge
+        rule = f"no bounce leaves the film, {edge:g} d: nothing to fit a law to"
         raise InputError(*(Defect(rule, file=t.recording.name) for t in trajectories))
     records = {t.recording.name: t.recording for t in trajectories}
     o = Observations.from_impacts(
@@ -89,13 +102,13 @@ def law_fit(plan: Plan, o: Observations) -> Fit:
     return estimate(plan, o)
 
 
-def closures_of(fit: Fit, wake: bool) -> Closures:
+def closures_of(fit: Fit, wake: bool, edge: float = H_FILM) -> Closures:
     """The bouncing sphere with the fitted law; parameters that are separate by a label are not known here."""
     names = [p.name for p in fit.maximum.parameters]
     values = dict(fit.likelihood.fixed) | dict(zip(names, map(float, fit.maximum.values), strict=True))
     own = {p.name: values[p.name] for p in fit.likelihood.model.parameters}
     e_dry = values["e_dry"] if isinstance(values.get("e_dry"), float) else None
-    law = FittedLaw(fit.likelihood.model, own)
+    law = FittedLaw(fit.likelihood.model, own, edge)
     return Closures(rebound=law, wake=OwnWake() if wake else None, e_dry=e_dry)
 
 
@@ -117,8 +130,14 @@ class TrajectoryFit:
         """What is kept: the fit, and beside it every record's unknowns, noise and distances."""
         base = result_of(self.fit)
         records = tuple(self._record(t) for t in self.trajectories)
-        notes = [*base.notes, self.wake_in_words(), *in_words(self.trajectories, self.fit, self.slopes)]
-        return base.model_copy(update={"trajectories": records, "notes": tuple(notes)})
+        notes = (*base.notes, self.wake_in_words(), *within_the_film(self.trajectories))
+        doubts = tuple(map(str, self.doubts))
+        return base.model_copy(update={"trajectories": records, "notes": notes, "doubts": doubts})
+
+    @property
+    def doubts(self) -> tuple[Doubt, ...]:
+        """What is doubtful about records, impacts and model."""
+        return (*of_records(self.trajectories), *self.fit.doubts, *of_parameters(self.fit, self.slopes))
 
     def wake_in_words(self) -> str:
         """Which model the frames prefer."""
@@ -133,7 +152,7 @@ class TrajectoryFit:
         )
 
     def _record(self, t: WholeTrajectory) -> TrajectoryRecord:
-        path, rms, apex = distance_d(t, closures_of(self.fit, self.wake))
+        path, rms, apex = distance_d(t, closures_of(self.fit, self.wake, self.measured.edge))
         other = next(
             (x for x in self.measured.trajectories.get(not self.wake, []) if x.recording is t.recording), None
         )
@@ -161,7 +180,7 @@ def fit_law(measured: Measured, plan: Plan, how: Reading, wake: bool | None = No
     wake = measured.preferred if wake is None else wake
     fit = law_fit(plan, observations(measured.trajectories[wake], how))
     try:
-        slopes: Fit | str = law_fit(plan, slope_observations(measured.records, how))
+        slopes: Fit | str = law_fit(plan, slope_observations(measured.records, replace(how, edge=measured.edge)))
     except InputError as error:
         slopes = str(error.defects[0])
     return TrajectoryFit(measured, wake, fit, slopes)

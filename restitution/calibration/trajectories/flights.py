@@ -18,17 +18,20 @@ TOLERANCE = 1e-5
 
 
 class Flights:
-    """The trajectories of a record under the model, with the wake of the approach or without."""
+    """The trajectories of a record under the model, with the wake of the approach or without.
 
-    def __init__(self, r: Recording, wake: bool):
-        self.recording, self.wake = r, wake
+    ``edge`` of the film in diameters: within it e_eff stands for every viscous force.
+    """
+
+    def __init__(self, r: Recording, wake: bool, edge: float):
+        self.recording, self.wake, self.edge = r, wake, edge
         self._from: dict[float, SharedFlights] = {}
 
     def __call__(self, x: NDArray) -> Trajectory:
         """The one with ``x``: what is open at the start, and the restitution of each bounce."""
         r, start = self.recording, float(x[0])
         if start not in self._from:
-            closures = Closures(measured=(), wake=OwnWake() if self.wake else None)
+            closures = Closures(measured=(), wake=OwnWake() if self.wake else None, film=self.edge)
             release, end = _release(r, start)
             self._from[start] = SharedFlights(r.conditions, release, closures, end, TOLERANCE)
         return _flown(r, lambda: self._from[start](tuple(map(float, np.clip(x[1:], 0, 1)))))

@@ -3,30 +3,34 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from restitution.bounce import terminal_speed
-from restitution.bounce.closures import excess_weight
 from restitution.bounce.forces import GREATEST_RE, expected_reynolds
 from restitution.conditions import Conditions
+from restitution.doubts import Doubt, falls, refuse
+from restitution.doubts.motion import CENTRE_D
 from restitution.errors import Defect, InputError
+from restitution.laws.drag import excess_weight, terminal_speed
 from restitution.stokes import StokesNumber
-from restitution.tracks import DETECTION, Contacts, Track
+from restitution.tracks import DETECTION, Contacts, Track, begins_on_rebound
 
 LEAST_FRAMES = 8
 LEAST_RISE_D = 0.02
 """Rise of at least one bounce, in diameters."""
 BELOW_D = 0.02
 """How far below the wall noise may put the first frame, in diameters."""
-CENTRE_D = 0.2
-"""A record that never comes nearer to the wall, in diameters, has the height of the centre in place of the gap."""
+IMPOSSIBLE = ("direction", "clock")
+"""Names of doubts about a record that no start, scale or restitution of the model makes up for."""
 SPEEDS = (0.02, 20.0)
 """Between which parts of the terminal speed a record's fastest frames must be; a wrong unit is out by 1000."""
 
 
-def check(name: str, track: Track, contacts: Contacts, conditions: Conditions) -> None:
-    """Refuse what cannot be a bouncing sphere's gap in metres."""
+def check(
+    name: str, track: Track, contacts: Contacts, conditions: Conditions, doubts: Sequence[Doubt] = ()
+) -> None:
+    """Refuse what cannot be a bouncing sphere's gap in metres; ``doubts`` are those about the track."""
     excess_weight(conditions)
     d, terminal = conditions.sphere.diameter, terminal_speed(conditions)
     if track.quantity != "gap":
@@ -44,16 +48,17 @@ def check(name: str, track: Track, contacts: Contacts, conditions: Conditions) -
         St = StokesNumber.from_speed(terminal, conditions).value
         rule = f"makes the sphere fall at {terminal:.2g} m/s, St = {St:.2g}: in millimetres?"
         raise InputError(Defect(rule, file=name, field="sphere.diameter", value=f"{d:g}"))
-    speeds = np.abs(np.diff(track.value) / np.diff(track.time_s))
-    fastest = float(np.quantile(speeds, 0.95))
+    # What the model cannot follow whatever starts it.
+    refuse(doubt for doubt in doubts if doubt.name in IMPOSSIBLE)
+    fastest = falls.fastest(track, contacts)
     if not SPEEDS[0] * terminal < fastest < SPEEDS[1] * terminal:
-        row = int(np.argmax(speeds)) + 3
-        St, expected = (StokesNumber.from_speed(v, conditions).value for v in (fastest, terminal))
+        refuse(doubts)
         rule = (
-            f"moves at {fastest:.3g} m/s, St = {St:.2g}, where this sphere falls at {terminal:.2g} m/s at most, "
-            f"St = {expected:.2g}: are gap and diameter in metres, time in seconds?"
+            f"moves at {fastest:.3g} m/s, where this sphere falls at {terminal:.2g} m/s at most: are gap "
+            "and diameter "
+            "in metres, time in seconds?"
         )
-        raise InputError(Defect(rule, file=name, row=row, field="gap_m", value=f"{track.value[row - 2]:g}"))
+        raise InputError(Defect(rule, file=name))
     if (contacts.level or 0.0) < -CENTRE_D * d:
         rule = f"comes to rest {-contacts.level / d:.2g} d below the wall: is the gap zero where they touch?"
         raise InputError(Defect(rule, file=name, field="gap_m", value=f"{contacts.level:g}"))
@@ -64,23 +69,12 @@ def check(name: str, track: Track, contacts: Contacts, conditions: Conditions) -
     if not _rises(track, contacts, d):
         rule = f"has no bounce that rises by {LEAST_RISE_D:g} d: nothing to fit (is all in m, kg, s?)"
         raise InputError(Defect(rule, file=name))
-    lowest = int(np.argmin(track.value))
-    if track.value[lowest] > CENTRE_D * d:
-        rule = (
-            f"is the lowest of the record, {track.value[lowest] / d:.2g} d above the wall: is it the height of "
-            "the centre? The gap is that of the lowest point, less by d/2 (--point centre)"
-        )
-        raise InputError(Defect(rule, file=name, row=lowest + 2, field="gap_m", value=f"{track.value[lowest]:g}"))
-
-
-def begins_rising(track: Track) -> bool:
-    """Whether the record begins on a rebound."""
-    return bool(track.value[2] > track.value[0])
+    refuse(doubt for doubt in doubts if doubt.name == "centre")
 
 
 def bounces(track: Track, contacts: Contacts) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """When the sphere bounced, to a frame (nan where that was not filmed), and by how much it then rose in m."""
-    touches = [(math.nan, 0)] if begins_rising(track) else []
+    touches = [(math.nan, 0)] if begins_on_rebound(track, contacts) else []
     touches += [(float(track.time_s[c.nearest]), c.nearest) for c in contacts.contacts if c.nearest is not None]
     begins = [i for _, i in touches]
     ends = [*begins[1:], len(track.value)][: len(begins)]

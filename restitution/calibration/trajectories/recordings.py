@@ -29,13 +29,14 @@ from restitution.bounce.agreement import release_reaching
 from restitution.calibration.estimation.parameters import Normal
 from restitution.calibration.reading.reading import Reading
 from restitution.calibration.reading.track_impacts import track_of
-from restitution.calibration.trajectories.recording_checks import begins_rising, bounces, check
+from restitution.calibration.trajectories.recording_checks import bounces, check
 from restitution.conditions import Conditions
+from restitution.doubts import Doubt, cleaned, of_track
 from restitution.errors import Defect, InputError
 from restitution.foreign.table import read_foreign
 from restitution.foreign.track import is_track, what_is_needed
 from restitution.stokes import H_FILM
-from restitution.tracks import Track, contacts
+from restitution.tracks import Track, begins_on_rebound, contacts
 
 SCALE = 0.01
 """Relative standard deviation of the scale of length where none is stated."""
@@ -104,6 +105,7 @@ class Recording:
     """Of each bounce that was seen to rise, about when it was; nan where the record begins after it."""
     digest: str
     notes: tuple[str, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def fall_time(self) -> float:
@@ -160,49 +162,61 @@ def recording(
 ) -> Recording:  # fmt: skip
     """A record from its track; ``release_gap`` (m) is that of a release from rest, ``level_sigma`` its error."""
     d = conditions.sphere.diameter
-    touches = contacts(track)
-    check(name, track, touches, conditions)
+    clean = cleaned(track, name)
+    track, touches = clean.track, contacts(clean.track)
+    doubts = (*clean.doubts, *of_track(track, touches, conditions, name))
+    check(name, track, touches, conditions, doubts)
     level = touches.level or 0.0
     rest = touches.contacts[-1].approach.stop if touches.level is not None else len(track.time_s)
     time, gap = track.time_s[:rest], track.value[:rest] - level
-    rising = begins_rising(track)
+    rising = begins_on_rebound(track, touches)
     notes = []
     if rest < len(track.time_s):
         n = len(track.time_s) - rest
         notes.append(f"{name}: the {n} frames at rest tell the level of the wall ({level:.2g} m) and nothing else")
     zero = LEVEL_D * d if level_sigma is None else level_sigma
     approach = np.arange(0) if rising else np.array(touches.contacts[0].approach, int)
-    start = _start(name, time, gap, approach, conditions, release_gap, zero, notes)
+    start = _start(name, time, gap, track.sigma, approach, conditions, release_gap, zero, notes)
     dt = float(np.median(np.diff(track.time_s)))
     if start.kind == "height" and release_gap is not None:
         clock, clock_of = Normal(0.0, dt), "release"
     else:
         touch = 0.0
         if not rising:
-            last = approach[-2:]
-            speed = -np.polyfit(time[last], gap[last], 1)[0] if len(last) > 1 else terminal_speed(conditions)
-            touch = float(time[last[-1]] + max(gap[last[-1]], 0.0) / max(speed, 1e-9))
+            back, last = approach[::-1], approach[-1]
+            speed = -_speed(time[back], gap[back], track.sigma) if len(back) > 1 else terminal_speed(conditions)
+            touch = float(time[last] + max(gap[last], 0.0) / max(speed, 1e-9))
         elif abs(time[0]) > 2 * dt:
-            touch = float(time[0] - gap[0] * (time[1] - time[0]) / max(gap[1] - gap[0], 1e-12))
+            touch = float(time[0] - gap[0] / max(_speed(time, gap, track.sigma), 1e-9))
         clock, clock_of = Normal(touch, dt), "contact"
     return Recording(
         name, conditions, track, time, gap, track.sigma, len(track.time_s) - rest,
         float(np.mean(track.value[rest:]) - level) if rest < len(track.time_s) else 0.0,
-        start, clock, clock_of, 0.0, SCALE, zero, bounces(track, touches)[0], digest, tuple(notes),
+        start, clock, clock_of, 0.0, SCALE, zero, bounces(track, touches)[0], digest, tuple(notes), doubts,
     )  # fmt: skip
 
 
+_MOVED = 10.0
+"""Errors of a frame by which a sphere must have moved to tell its speed."""
+
+
+def _speed(time: NDArray, gap: NDArray, sigma: float, least: int = 2) -> float:
+    """Rate of the gap in m/s over the first frames, at least so many, in which the sphere moves."""
+    moved = np.flatnonzero(np.abs(gap - gap[0]) > _MOVED * sigma)
+    n = max(least, int(moved[0]) + 1 if len(moved) else len(gap))
+    return float(np.polyfit(time[:n] - time[0], gap[:n], 1)[0])
+
+
 def _start(
-    name: str, time: NDArray, gap: NDArray, approach: NDArray, conditions: Conditions, release_gap: float | None,
-    zero: float, notes: list[str],
+    name: str, time: NDArray, gap: NDArray, sigma: float, approach: NDArray, conditions: Conditions,
+    release_gap: float | None, zero: float, notes: list[str],
 ) -> Start:  # fmt: skip
     d, terminal = conditions.sphere.diameter, terminal_speed(conditions)
     if release_gap is not None:
         return Start("height", Normal(release_gap, zero))
     frames = approach[gap[approach] > H_FILM * d]
     if len(frames) >= 2:
-        near = frames[: max(2, min(4, len(frames) // 2))]
-        first = -float(np.polyfit(time[near], gap[near], 1)[0])
+        first = -_speed(time[frames], gap[frames], sigma, max(2, min(4, len(frames) // 2)))
         if first >= STILL_FALLING * terminal:
             speed = -float(np.polyfit(time[frames], gap[frames], 1)[0])
             return Start("speed", Normal(speed, STEADY * speed), float(gap[frames[0]]))
@@ -214,7 +228,7 @@ def _start(
         quoted = conditions.impact
         impact = Normal(quoted.speed, max(quoted.speed_sigma, 1e-3 * quoted.speed))
     else:
-        out = float(np.max(np.diff(gap[:4]) / np.diff(time[:4])))
+        out = _speed(time, gap, sigma)
         impact = Normal(out / FIRST_E, UNSEEN * out / FIRST_E)
         notes.append(f"{name}: begins on a rebound whose impact was not filmed; its speed is open within 30 %")
     about = np.array([-0.04, 0.0, 0.04]) if conditions.impact is not None else np.array([-0.3, 0.0, 0.3])

@@ -31,6 +31,7 @@ from restitution.calibration.trajectories.flights import Flights, fall_speed, fl
 from restitution.calibration.trajectories.likelihood import Marginal, Noise, RecordLikelihood
 from restitution.calibration.trajectories.recordings import Recording
 from restitution.calibration.trajectories.unknowns import restitution_name
+from restitution.doubts import refuse
 from restitution.errors import Defect, InputError
 from restitution.impacts.find import find_impacts
 from restitution.stokes import H_FILM, Speed, convention
@@ -55,6 +56,8 @@ class WholeTrajectory:
 
     recording: Recording
     wake: bool
+    edge: float
+    """Of the film, in diameters: outside it the speeds of the impacts are those of the motion."""
     likelihood: RecordLikelihood
     names: tuple[str, ...]
     mean: NDArray
@@ -111,6 +114,7 @@ class WholeTrajectory:
         outside = self.outside()
         about = {
             "record": r.name, "kind": "measured", "outcome": "rebound", "speed_definition": str(Speed.FAR),
+            "film_edge_d": self.edge,
             "stokes_convention": stokes, "e_dry": r.conditions.sphere.e_dry,
             "note": "from the whole trajectory" + (", wake of the approach" if self.wake else ""),
         }  # fmt: skip
@@ -126,14 +130,14 @@ class WholeTrajectory:
                     "e_stokes_correlation": C[n, n + self.bounces] / (v_sigma * e_sigma),
                 }
             )  # fmt: skip
-        slopes = find_impacts(r.track, r.conditions, Speed.FAR, stokes, r.name).rows
+        slopes = find_impacts(r.track, r.conditions, Speed.FAR, stokes, r.name, h_film=self.edge).rows
         last = max((row["impact"] for row in rebounds), default=0)
         return rebounds + [row for row in slopes if row["outcome"] == "not_resolved" and row["impact"] > last]
 
     def outside(self) -> NDArray:
         """Of each bounce, whether the flights before and after it leave the film."""
         flights = self.likelihood.model(self.mean)
-        leaves = flights.gap.max(axis=1) > H_FILM * self.recording.conditions.sphere.diameter
+        leaves = flights.gap.max(axis=1) > self.edge * self.recording.conditions.sphere.diameter
         return leaves[: self.bounces] & leaves[1 : self.bounces + 1]
 
     def contact_times(self) -> NDArray:
@@ -143,14 +147,14 @@ class WholeTrajectory:
         return (flights.contacts[1 : self.bounces + 1] - zero) / (1 + u.rate) + u.time
 
 
-def whole_trajectories(records: Sequence[Recording], wake: bool) -> list[WholeTrajectory]:
+def whole_trajectories(records: Sequence[Recording], wake: bool, edge: float = H_FILM) -> list[WholeTrajectory]:
     """All records under the model; raises :class:`InputError` naming the record where that cannot be done."""
-    return [whole_trajectory(r, wake) for r in records]
+    return [whole_trajectory(r, wake, edge) for r in records]
 
 
-def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
-    """One record under the model."""
-    integrate = Flights(r, wake)
+def whole_trajectory(r: Recording, wake: bool, edge: float = H_FILM) -> WholeTrajectory:
+    """One record under the model, the film a black box within ``edge`` diameters."""
+    integrate = Flights(r, wake, edge)
     centre = _first_guess(r, integrate)
     steps = np.full(len(centre), _E_STEP)
     steps[0] = min(r.start.prior.sigma, _START_STEP * r.start.prior.mean)
@@ -182,6 +186,7 @@ def whole_trajectory(r: Recording, wake: bool) -> WholeTrajectory:
             own = likelihood.prior[1] * np.sqrt(np.diag(m.moments()[1]))
             steps, narrow = np.clip(likelihood.named(own).flight, 0.02 * steps, steps), True
     else:
+        refuse(doubt for doubt in r.doubts if doubt.name == "speed")
         raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", file=r.name))
     return _summary(r, integrate, likelihood, m)
 
@@ -198,7 +203,7 @@ def _summary(r: Recording, integrate: Flights, likelihood: RecordLikelihood, m: 
     residual = r.gap_m - likelihood.predict(values)
     after = time >= flights.contacts[1]
     return WholeTrajectory(
-        r, integrate.wake, likelihood, likelihood.names, values, C * np.outer(sigma, sigma),
+        r, integrate.wake, integrate.edge, likelihood, likelihood.names, values, C * np.outer(sigma, sigma),
         _log_moments(likelihood.noise.sigma_u, m.weights), _log_moments(likelihood.noise.tau, m.weights),
         m.log, path,
         float(np.max(away, initial=0.0) / r.sigma),

@@ -12,11 +12,12 @@ from scipy.stats import multivariate_normal
 from restitution import datasets, laws
 from restitution.bounce import Closures, Release, bounce
 from restitution.bounce.agreement import release_of
+from restitution.bounce.edges import restitution_at
 from restitution.calibration import Plan, model_of
 from restitution.calibration.reading.reading import Reading
 from restitution.calibration.result.fit_result import read_fit
 from restitution.calibration.trajectories.correlated_noise import gram_matrices
-from restitution.calibration.trajectories.fit import law_fit, observations
+from restitution.calibration.trajectories.fit import Measured, closures_of, fit_law, law_fit, observations
 from restitution.calibration.trajectories.flights import Flights
 from restitution.calibration.trajectories.recordings import read_recordings, recording
 from restitution.calibration.trajectories.synthetic import Filming, K, draw, filmed
@@ -91,7 +92,7 @@ def test_map_is_the_integrated_trajectory_near_its_centre(noisy):
     _, _, found = noisy
     flights = found.likelihood.flights
     x = flights.centre + flights.steps * np.array([0.8, -0.9, 0.7, -0.8])
-    path, near = Flights(found.recording, False)(x), flights.expand(x)
+    path, near = Flights(found.recording, False, 0.1)(x), flights.expand(x)
     time = np.linspace(0, near.contacts[-1], 300)
     # A third of the error of a reading, 1e-5 m, the time that the sphere takes for that, and a third of the
     # smallest error that an impact speed has in a shipped record, 8e-4.
@@ -207,10 +208,10 @@ def spoil(track, row, column, value):
         (lambda t: t, ("7800.0", "900.0"), ("t.csv", "density", "0.96")),
         (lambda t: spoil(t, 0, "gap_m", -9e-3), ("", ""), ("t.csv:2", "gap_m", "-0.009")),
         (lambda t: spoil(t, 5, "time_s", t.time_s[3]), ("", ""), ("t.csv:7", "time_s", "-0.0096")),
-        (lambda t: t.assign(gap_m=t.gap_m + 1.5e-3), ("", ""), ("t.csv:94", "gap_m", "centre")),
+        (lambda t: t.assign(gap_m=t.gap_m + 1.5e-3), ("", ""), ("t.csv", "--point centre")),
         (lambda t: t.iloc[:8], ("", ""), ("t.csv", "no bounce")),
         (lambda t: spoil(t, 5, "gap_m", np.inf), ("", ""), ("t.csv:7", "gap_m", "inf")),
-        (lambda t: t.assign(gap_m=1e3 * t.gap_m), ("", ""), ("t.csv:9", "St", "metres")),
+        (lambda t: t.assign(gap_m=1e3 * t.gap_m), ("", ""), ("t.csv", "free fall", "--unit")),
         (lambda t: t, ("3e-3", "3.0"), ("t.csv", "sphere.diameter", "3", "St")),
     ],
 )
@@ -282,3 +283,33 @@ def test_a_record_that_rests_below_the_wall_is_refused(tmp_path):
     sunk = Track(track.time_s, track.value - 0.001, track.quantity, track.sigma)
     with pytest.raises(InputError, match="below the wall"):
         recording("sunk", sunk, datasets.resource("gondret2002_st152").conditions)
+
+
+def test_e_of_another_edge_is_that_of_the_same_flights_with_the_film_elsewhere(noisy):
+    """The truth is of 0.1 d; at 0.3 d the same frames tell the converted e, the loss between the edges in it."""
+    _, truth, found = noisy
+    wide = whole_trajectory(found.recording, False, 0.3)
+    c = found.recording.conditions
+    converted = restitution_at(c, float(wide.impact_moments()[0][0]), 0.3, 0.1, lambda v: float(truth.e[0]))
+    e, sigma = wide.restitutions[0]
+    assert converted < truth.e[0] - 0.04
+    assert e == pytest.approx(converted, abs=max(3 * sigma, 0.01))
+
+
+def test_the_edge_is_kept_with_the_fit_and_its_law_flies_at_it(noisy):
+    _, _, found = noisy
+    measured = Measured((found.recording,), {False: [whole_trajectory(found.recording, False, 0.2)]}, 0.2)
+    fit = fit_law(measured, Plan(model_of("eq4_exponential"), scatter=False), Reading())
+    result = fit.result()
+    assert result.edge_d == 0.2
+    assert closures_of(fit.fit, False, 0.2).film == 0.2
+    assert fit.slopes.likelihood.observations.edge == 0.2
+    assert result.values["K"] > fitted_K(found)[0] + 1
+    older = {k: v for k, v in json.loads(result.to_json()).items() if k != "edge_d"}
+    assert type(result).model_validate(older).edge_d == 0.1
+
+
+@pytest.mark.parametrize("edge", [0.0, -0.1, 2.0, np.nan])
+def test_an_edge_that_is_none_is_refused(noisy, edge):
+    with pytest.raises(InputError, match="edge"):
+        Measured.of([noisy[2].recording], (False,), edge)

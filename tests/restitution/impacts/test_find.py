@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from restitution import datasets
-from restitution.conditions import Conditions
-from restitution.errors import InputError
 from restitution.impacts import find_impacts
 from restitution.tables import check_table
 from restitution.tracks import noise
@@ -252,11 +250,3 @@ def test_the_table_obeys_the_impact_schema(tmp_path):
     path = tmp_path / "impacts.csv"
     shipped("li2012_drop2", "contact").table().to_csv(path, index=False)
     assert check_table(path, datasets.schema("impact")) == []
-
-
-def test_a_sphere_without_dry_restitution_is_refused():
-    bare = Conditions.model_validate(
-        {"fluid": {"density": 935, "viscosity": 0.01}, "sphere": {"diameter": 3e-3, "density": 7800}}
-    )
-    with pytest.raises(InputError, match="e_dry"):
-        find_impacts(datasets.load_track("gondret2002_st152"), bare)

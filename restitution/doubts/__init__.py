@@ -1,0 +1,14 @@
+"""What a record is held against before its numbers are believed.
+
+Input that cannot be used is refused; input that can be used but contradicts what every such record obeys gives its
+result and a :class:`~.doubt.Doubt` that names the likely mistake. Read :mod:`.doubt`, :mod:`.mistracked`
+(frames that no flight passes through), :mod:`.falls` (what the flights of a track say of gravity),
+:mod:`.motion` (a track against its conditions), :mod:`.film_loss` (impacts against all measured ones).
+"""
+
+from restitution.doubts.doubt import Doubt, refuse
+from restitution.doubts.film_loss import of_impacts
+from restitution.doubts.mistracked import Cleaned, cleaned
+from restitution.doubts.motion import of_track
+
+__all__ = ["Cleaned", "Doubt", "cleaned", "of_impacts", "of_track", "refuse"]

@@ -1,0 +1,36 @@
+"""Impacts whose Stokes number is of another definition lose in the film what no measured record does."""
+
+import numpy as np
+import pytest
+
+from restitution.doubts import of_impacts
+
+
+def impacts(K, seed, n=12, e_dry=0.97):
+    rng = np.random.default_rng(seed)
+    St = np.exp(rng.uniform(np.log(20), np.log(200), n))
+    return St, e_dry * np.exp(-K * (1 + e_dry) / St) + 0.015 * rng.standard_normal(n), e_dry
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("K", [7.0, 11.0, 18.0])
+def test_what_is_measured_is_not_doubted(K, seed):
+    assert of_impacts(*impacts(K, seed)) == []
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(
+    ("factor", "word"), [(9.0, "st_d"), (1 / 9, "--stokes st)"), (1e3, "mPa s"), (1e-3, "mPa s")]
+)
+def test_another_stokes_number_is_named(factor, word, seed):
+    St, e, e_dry = impacts(11.0, seed)
+    (doubt,) = of_impacts(factor * St, e, e_dry, ["my.csv"])
+    assert word in doubt.message
+    assert doubt.where == "my.csv"
+
+
+def test_a_few_or_nearly_dry_impacts_tell_nothing():
+    St, e, e_dry = impacts(11.0, 1)
+    assert of_impacts(9 * St[:2], e[:2], e_dry) == []
+    assert of_impacts([1e4, 2e4, 3e4], [0.955, 0.96, 0.95], 0.97) == []
+    assert of_impacts([50.0, 60.0, 80.0], [np.nan] * 3, 0.97) == []

@@ -1,0 +1,177 @@
+"""What a falling sphere cannot do is doubted, with the mistake that makes it seem so; ordinary records are not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from restitution import datasets
+from restitution.conditions import Conditions
+from restitution.doubts import Doubt, cleaned, of_track
+from restitution.errors import InputError
+from restitution.tracks import Track, contacts
+from tests.flights import as_track, film, fly
+
+
+def doubts(track, conditions):
+    clean = cleaned(track)
+    return [*clean.doubts, *of_track(clean.track, contacts(clean.track), conditions)]
+
+
+def names(track, conditions):
+    return [doubt.name for doubt in doubts(track, conditions)]
+
+
+def steady_fall(c):
+    """Speed at which the standard drag, 24/Re (1 + 0.15 Re^0.687), carries the weight in the fluid."""
+    d, mu, rho = c.sphere.diameter, c.fluid.viscosity, c.fluid.density
+    weight = (c.sphere.density - rho) * np.pi * d**3 / 6 * c.gravity
+    return brentq(lambda v: 3 * np.pi * mu * d * v * (1 + 0.15 * (v * d * rho / mu) ** 0.687) - weight, 1e-9, 1e3)
+
+
+def ordinary(seed, quantity="gap"):
+    """A sphere of 2 to 12 mm in a liquid of 1 to 20 mPa s that bounces twice, as a camera sees it; its
+    conditions."""
+    rng = np.random.default_rng([99, seed])
+    c = Conditions.model_validate(
+        {
+            "fluid": {"density": rng.uniform(800, 1200), "viscosity": 10 ** rng.uniform(-3, -1.7)},
+            "sphere": {
+                "diameter": rng.uniform(2e-3, 12e-3),
+                "density": rng.choice([2500.0, 7800.0]),
+                "e_dry": 0.97,
+            },
+        }
+    )
+    d, g = c.sphere.diameter, c.gravity
+    fall = g * (c.sphere.density - c.fluid.density) / (c.sphere.density + c.fluid.density / 2)
+    flights, _ = fly(rng.uniform(5, 12) * d, 0.0, rng.uniform(0.6, 0.85, 2), steady_fall(c), fall)
+    times = np.arange(0, flights[-1].end, rng.uniform(0.03, 0.12) * np.sqrt(d / g))
+    times = times[rng.random(len(times)) > 0.05]
+    gap, velocity = film(flights, times)
+    if quantity == "gap":
+        return as_track(times, gap + 0.003 * d * rng.standard_normal(len(times))), c
+    return as_track(times, velocity + 0.01 * np.sqrt(g * d) * rng.standard_normal(len(times)), "velocity"), c
+
+
+def changed(c, fluid=None, sphere=None):
+    """The conditions with some numbers multiplied."""
+    f = {k: v * getattr(c.fluid, k) for k, v in (fluid or {}).items()}
+    s = {k: v * getattr(c.sphere, k) for k, v in (sphere or {}).items()}
+    return c.model_copy(update={"fluid": c.fluid.model_copy(update=f), "sphere": c.sphere.model_copy(update=s)})
+
+
+@pytest.mark.parametrize("quantity", ["gap", "velocity"])
+def test_ordinary_records_are_not_doubted(quantity):
+    found = {seed: names(*ordinary(seed, quantity)) for seed in range(100)}
+    assert {seed: n for seed, n in found.items() if n} == {}
+
+
+def test_shipped_records_are_not_doubted():
+    for name in datasets.names():
+        resource = datasets.resource(name)
+        if resource.table in ("trajectory", "settling"):
+            assert doubts(datasets.load_track(name), resource.conditions) == [], name
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("factor", [2.0, 4.0, 8.0, 33.3])
+def test_a_film_played_slowly_is_told_by_how_much(seed, factor):
+    track, c = ordinary(seed)
+    (doubt,) = doubts(replace(track, time_s=factor * track.time_s), c)
+    assert doubt.name == "clock"
+    said = float(doubt.message.split("times are ")[1].split()[0])
+    assert said == pytest.approx(factor, rel=0.15)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(("length", "time"), [(1e3, 1.0), (1e-3, 1.0), (1.0, 1e3), (1.0, 0.3), (7.0, 1.0)])
+def test_wrong_units_are_doubted(seed, length, time):
+    track, c = ordinary(seed)
+    wrong = Track(time * track.time_s, length * track.value, "gap", length * track.sigma)
+    assert names(wrong, c) == ["clock"]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_dimensionless_numbers_taken_for_metres_and_seconds_are_doubted(seed):
+    """Times in d/v, gaps in d, as solvers write them."""
+    track, c = ordinary(seed)
+    d, v = c.sphere.diameter, 0.8 * steady_fall(c)
+    if d * (d / v) ** -2 > 0.5:  # by chance near to one
+        return
+    assert "clock" in names(Track(track.time_s * v / d, track.value / d, "gap", track.sigma / d), c)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_viscosity_in_centipoise_is_named(seed):
+    track, c = ordinary(seed)
+    (doubt,) = doubts(track, changed(c, fluid={"viscosity": 1e3}))
+    assert (doubt.name, "mPa s" in doubt.message) == ("speed", True)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_densities_in_grams_a_cubic_centimetre_are_named(seed):
+    track, c = ordinary(seed)
+    (doubt,) = doubts(track, changed(c, fluid={"density": 1e-3}, sphere={"density": 1e-3}))
+    assert (doubt.name, "g/cm3" in doubt.message) == ("speed", True)
+
+
+def test_a_radius_for_the_diameter_is_named():
+    """Where the sphere nears its terminal speed; a sphere that fell from a few diameters alone cannot tell."""
+    named = 0
+    for seed in range(40):
+        track, c = ordinary(seed)
+        found = doubts(track, changed(c, sphere={"diameter": 0.5}))
+        named += any("radius" in doubt.message for doubt in found)
+        assert all(doubt.name == "speed" for doubt in found)
+    assert named >= 5
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_upside_down_records_are_named(seed):
+    track, c = ordinary(seed)
+    top = track.value.max()
+    still = np.full(40, top) + track.sigma * np.random.default_rng(seed).standard_normal(40)
+    fallen = top - track.value
+    times = np.append(track.time_s, track.time_s[-1] + np.median(np.diff(track.time_s)) * np.arange(1, 41))
+    for down in (replace(track, value=fallen), Track(times, np.append(fallen, still), "gap", track.sigma)):
+        found = doubts(down, c)
+        assert [d.name for d in found] == ["direction"]
+        assert "--direction down" in found[0].message
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_velocities_of_a_fall_counted_positive_are_named(seed):
+    track, c = ordinary(seed, "velocity")
+    (doubt,) = doubts(replace(track, value=-track.value), c)
+    assert (doubt.name, "--direction down" in doubt.message) == ("direction", True)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_heights_of_the_centre_are_named(seed):
+    track, c = ordinary(seed)
+    (doubt,) = doubts(replace(track, value=track.value + c.sphere.radius), c)
+    assert (doubt.name, "--point centre" in doubt.message) == ("centre", True)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_minimum_in_mid_air_is_no_contact(seed):
+    """Twenty neighbouring frames of a fall follow something else, deeper by a third of the height."""
+    track, _ = ordinary(seed)
+    value = track.value.copy()
+    falling = np.flatnonzero(value < 0.8 * value[0])[0]
+    height = value[falling]
+    value[falling : falling + 20] = 0.7 * height + 0.1 * height * np.abs(np.linspace(-1, 1, 20))
+    found = contacts(replace(track, value=value))
+    assert len(found.contacts) == len(contacts(track).contacts)
+    assert any(falling <= i < falling + 20 for i in found.hovering)
+
+
+def test_doubts_are_refused_as_input():
+    from restitution.doubts import refuse
+
+    refuse([])
+    with pytest.raises(InputError) as error:
+        refuse([Doubt("clock", "one", "a.csv"), Doubt("clock", "one", "a.csv"), Doubt("speed", "two")])
+    assert [str(d) for d in error.value.defects] == ["a.csv: one", "two"]
