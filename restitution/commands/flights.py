@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from restitution.commands import options
-from restitution.commands.console import show, show_rows
+from restitution.commands import options, tracked
+from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     from restitution.flights import FlightImpacts, Flights
@@ -52,6 +53,7 @@ def read(args: argparse.Namespace) -> Flights | None:
 def run(args: argparse.Namespace, flights: Flights) -> None:
     """Print the impacts between the flights, and write them where asked."""
     from restitution.conditions import read_conditions
+    from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
     from restitution.flights import impacts_of
@@ -61,7 +63,10 @@ def run(args: argparse.Namespace, flights: Flights) -> None:
     if args.out and conditions is None:
         rule = "St and e_dry are needed in a table of impacts: --conditions FILE"
         raise InputError(Defect(rule, file=args.out, field="--out"))
-    impacts = impacts_of(flights, conditions, not args.no_drag, args.stokes, Path(args.track).stem)
+    name = Path(args.track).stem
+    impacts = impacts_of(flights, conditions, not args.no_drag, args.stokes, name, tracked.edge(args))
+    if args.strict:
+        refuse(replace(doubt, where=args.track) for doubt in impacts.doubts)
     if args.out:
         write_whole(args.out, table_text(impacts.table()))
     show(f"read: {flights.reading}")
@@ -71,8 +76,7 @@ def run(args: argparse.Namespace, flights: Flights) -> None:
         show("note: fluid and sphere are not stated (--conditions FILE): no drag, no buoyancy, no St")
     for note in impacts.notes:
         show(f"note: {note}")
-    for doubt in impacts.doubts:
-        show(f"doubt: {doubt}")
+    show_doubts(impacts.doubts)
 
 
 def _show(impacts: FlightImpacts, by_drag: bool) -> None:

@@ -36,6 +36,7 @@ def run(args: argparse.Namespace) -> None:
     """Say how the track was read, write its picture, and open it."""
     import tempfile
 
+    from restitution.doubts import cleaned
     from restitution.errors import Defect, InputError
     from restitution.files import check_folder, write_folder, write_whole
     from restitution.report.look import LeftOut, Told, pages, view_of
@@ -49,21 +50,21 @@ def run(args: argparse.Namespace) -> None:
         rule = "has bounces alone, no track to look at: restitution impacts takes it"
         raise InputError(Defect(rule, file=args.track))
     read = tracked.read(args, without_conditions=True)
-    impacts, notes, doubts, track, left_out = None, [*read.notes], [], read.track, None
+    impacts, notes, doubts, track, left_out = None, [*read.notes], cleaned(read.track).doubts, read.track, None
     if read.conditions is None:
         notes.append("fluid and sphere are not stated (--conditions FILE): no speeds, no St, no e_eff")
     else:
         try:
             impacts = read.impacts(args)
             notes += impacts.notes
-            doubts += map(str, impacts.doubts)
-            track = impacts.measure.track
+            doubts, track = impacts.doubts, impacts.measure.track
             left_out = LeftOut(read.track.time_s[impacts.lost], read.track.value[impacts.lost])
         except InputError as error:  # a look is wanted most where impacts cannot be had
             notes += [str(defect) for defect in error.defects]
     view = view_of(track, read.conditions, impacts, left_out)
     table = None if impacts is None else impacts.table()
-    contents = pages(view, Told(Path(args.track).name, read.reading, notes, doubts), table)
+    told = Told(Path(args.track).name, read.reading, notes, [str(doubt) for doubt in doubts])
+    contents = pages(view, told, table)
     if read.reading:
         show(f"read: {read.reading}")
     if table is not None:

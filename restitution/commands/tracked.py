@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """What the numbers of a track mean, and how speeds are taken from it."""
-    parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere in TOML (see --template)")
+    parser.add_argument(
+        "--conditions", metavar="FILE", help="fluid and sphere in TOML (impacts --template writes one)"
+    )
     parser.add_argument(
         "--speed",
         choices=("far", "contact", "window"),
@@ -57,6 +59,15 @@ class Tracked:
         )
 
 
+def edge(args: argparse.Namespace) -> float:
+    """The edge of the film in diameters."""
+    from restitution.errors import Defect, InputError
+
+    if not 0 < args.film < 10:
+        raise InputError(Defect("must be between 0 and 10 diameters", field="--film", value=f"{args.film}"))
+    return args.film
+
+
 def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
     """The track that the options name; ``without_conditions``: they need not be stated."""
     import math
@@ -68,10 +79,9 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
     from restitution.foreign import read_foreign, read_track
     from restitution.foreign.track import is_track
 
-    for name, bad in (("--frames", args.frames < 2), ("--film", not 0 < args.film < 10)):
-        if bad:
-            rule = "must be at least 2" if name == "--frames" else "must be between 0 and 10 diameters"
-            raise InputError(Defect(rule, field=name, value=str(getattr(args, name.removeprefix("--")))))
+    edge(args)
+    if args.frames < 2:
+        raise InputError(Defect("must be at least 2", field="--frames", value=f"{args.frames}"))
     if args.sigma is not None and not 0 < args.sigma < math.inf:
         raise InputError(Defect("must be positive and finite", field="--sigma", value=f"{args.sigma:g}"))
     if not Path(args.track).exists():

@@ -11,18 +11,20 @@ known, what is assumed of it is among them.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.bounce import terminal_speed
+from restitution.bounce import Closures, terminal_speed
 from restitution.conditions import Conditions, QuotedImpact
+from restitution.doubts import Doubt
 from restitution.errors import InputError
 from restitution.flights import drag, free
 from restitution.flights.table import Flights, Kind
-from restitution.stokes import Speed, convention
+from restitution.stokes import H_FILM, Speed, convention
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,7 +49,7 @@ class FlightImpacts:
     rows: list[dict] = field(repr=False)
     free: list[float]
     notes: list[str]
-    doubts: list[str]
+    doubts: list[Doubt]
 
     def table(self) -> pd.DataFrame:
         """The rows as a table with the columns of the impact schema."""
@@ -59,7 +61,12 @@ class FlightImpacts:
 
 
 def impacts_of(
-    flights: Flights, conditions: Conditions | None, with_drag: bool = True, stokes: str = "st", record: str = ""
+    flights: Flights,
+    conditions: Conditions | None,
+    with_drag: bool = True,
+    stokes: str = "st",
+    record: str = "",
+    edge: float = H_FILM,
 ) -> FlightImpacts:
     """The impacts that lie between two known flights, or between a release or quoted speed and the first one.
 
@@ -70,6 +77,7 @@ def impacts_of(
     with_drag : by the point particle, else in the limit of no drag.
     stokes : convention of the St reported.
     record : name that every row carries.
+    edge : gap in diameters within which e stands for every viscous force.
 
     Raises
     ------
@@ -92,7 +100,7 @@ def impacts_of(
         if len(number) > 1:
             first = quoted if number[0] == 1 else None
             by_drag = with_drag and conditions is not None
-            run = _Succession(flights.kind, number, value, sigma, conditions, first, by_drag)
+            run = _Succession(flights.kind, number, value, sigma, conditions, first, by_drag, edge)
             _of_succession(found, run, flights, stokes, record)
     if not found.rows and not found.doubts:
         least = (
@@ -117,6 +125,7 @@ class _Succession:
     conditions: Conditions | None
     quoted: QuotedImpact | None
     by_drag: bool
+    edge: float
 
     @property
     def released(self) -> bool:
@@ -151,9 +160,8 @@ class _Succession:
         if not self.by_drag:
             return self.without_drag(x)
         quoted = None if self.quoted is None else float(x[-2])
-        return np.array(
-            drag.speeds(self.kind, self.numbers, x[:-2], self.conditions, quoted, float(x[-1]), fallen)
-        )
+        told = (self.kind, self.numbers, x[:-2], self.conditions, quoted, float(x[-1]), fallen)
+        return np.array(drag.speeds(*told, Closures(measured=(), film=self.edge)))
 
     def with_slopes(self) -> tuple[NDArray, NDArray]:
         """The speeds, and how far each error moves them, shape (errors, 2, contacts); NaN: an error not stated.
@@ -183,7 +191,7 @@ def _of_succession(found: FlightImpacts, run: _Succession, flights: Flights, sto
     """Add its impacts."""
     (before, after), moves = run.with_slopes()
     e_free = np.divide(*run.without_drag(run.inputs()[0])[::-1])
-    _doubt(found, run, (before, after), e_free)
+    found.doubts.extend(_doubts(run, (before, after), e_free))
     known = np.flatnonzero(np.isfinite(before) & np.isfinite(after))
     if run.assumed and len(known):
         found.notes.append(
@@ -200,7 +208,7 @@ def _of_succession(found: FlightImpacts, run: _Succession, flights: Flights, sto
         label += f"with drag (without: e {e_free[k]:.3f})" if run.by_drag else "in the limit of no drag"
         row = {
             "record": record, "impact": contact, "kind": "measured", "outcome": "rebound",
-            "time_s": _time(flights, contact), "speed_definition": str(Speed.FAR),
+            "time_s": _time(flights, contact), "speed_definition": str(Speed.FAR), "film_edge_d": run.edge,
             "impact_speed_m_s": v, "impact_speed_sigma_m_s": v_sigma,
             "rebound_speed_m_s": out, "rebound_speed_sigma_m_s": out_sigma,
             "e_eff": out / v, "e_eff_sigma": e_sigma,
@@ -222,27 +230,24 @@ def _time(flights: Flights, contact: int) -> float:
     return float(flights.value[np.flatnonzero(flights.number == contact)[0]])
 
 
-def _doubt(found: FlightImpacts, run: _Succession, speeds: tuple[NDArray, NDArray], e_free: NDArray) -> None:
+def _doubts(run: _Succession, speeds: tuple[NDArray, NDArray], e_free: NDArray) -> Iterator[Doubt]:
     """What the flights contradict."""
     for contact in run.contacts[e_free > 1]:
         what = "lasts longer" if run.kind == "times" else "rises higher"
-        found.doubts.append(
-            f"the flight after bounce {contact} {what} than the one before: is a bounce missing before it, or one "
-            "too many counted?"
-        )
+        message = f"the flight after bounce {contact} {what} than the one before: is a bounce missing, or one "
+        yield Doubt("longer", message + "too many counted?")
     lacking = run.contacts[np.isnan(speeds[1]) & np.isfinite(e_free)]
     if len(lacking):
-        found.doubts.append(
-            f"no e up to 1 gives the flight after bounce {lacking[0]} with the drag of these conditions: "
-            "this and later bounces have no e (--no-drag gives the ratio of flights)"
-        )
+        message = f"no e up to 1 gives the flight after bounce {lacking[0]} with the drag of these conditions: "
+        yield Doubt("drag", message + "this and later bounces have no e (--no-drag gives the ratio of flights)")
     c = run.conditions
     if c is not None and c.sphere.density > c.fluid.density:
         fast, terminal = float(np.nanmax(speeds[0], initial=0.0)), terminal_speed(c)
         if fast > BEYOND * terminal:
             option = "--time-unit" if run.kind == "times" else "--unit"
-            found.doubts.append(
+            yield Doubt(
+                "speed",
                 f"bounces come in at {fast:.3g} m/s, {fast / terminal:.2g} times the terminal speed under these "
                 f"conditions ({terminal:.3g} m/s): are the {_WORDS[run.kind]} in this unit ({option}), fluid and "
-                "sphere these?"
+                "sphere these?",
             )

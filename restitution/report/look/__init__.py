@@ -4,6 +4,6 @@ Read :mod:`.view` (what there is to see), :mod:`.plot` (the picture), :mod:`.pag
 """
 
 from restitution.report.look.page import Told, pages
-from restitution.report.look.view import LeftOut, View, view_of
+from restitution.report.look.view import View, view_of
 
-__all__ = ["LeftOut", "Told", "View", "pages", "view_of"]
+__all__ = ["Told", "View", "pages", "view_of"]

@@ -24,7 +24,8 @@ _APART = 0.05
 """Part of an axis that two labels must be apart."""
 _IN_AIR = 0.05
 """Part of the way seen by which a contact lies above the wall that is drawn where it is."""
-_COLUMNS = 118
+_COLUMNS, _BELOW = 125, 155
+"""Characters of a line of the title, and of the remarks."""
 _FRAME = {"ls": "none", "marker": "o", "mfc": "white", "mec": "black", "mew": 0.7}
 _BOX = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 _READ = {"color": "#0072B2", "lw": 2.0}
@@ -34,7 +35,7 @@ def draw(view: View, title: str, remarks: Sequence[str] = ()) -> Drawing:
     """The picture; ``title`` says what it is of, ``remarks`` are written below, each a paragraph."""
     from matplotlib.figure import Figure
 
-    lines = [line for text in remarks for line in textwrap.wrap(text, _COLUMNS, subsequent_indent="   ")]
+    lines = [line for text in remarks for line in textwrap.wrap(text, _BELOW, subsequent_indent="   ")]
     below = 0.19 * len(lines) + 0.1 if lines else 0.01
     with style():
         figure = Figure(figsize=(9.6, 7.4 + below), layout="constrained")
@@ -92,7 +93,11 @@ class _Axes:
             ax.plot(time - self.zero, gap * k, color="black", lw=1.1, ls=":", label=label, zorder=3.5)
             ax.plot(flight.top_s - self.zero, flight.top_m * k, "_", color="black", ms=14, mew=1.4, zorder=4)
         ax.axhspan(level - 1e3, level, facecolor="#eeeeee", edgecolor="#999999", hatch="////", lw=0, zorder=0)
-        rest = f"wall, where it rests ({level:.2g} {self.unit})" if view.level is not None else "wall"
+        rest = (
+            f"wall, where it rests ({level:.2g} {self.unit})".replace("-", "\N{MINUS SIGN}")
+            if view.level is not None
+            else "wall"
+        )
         ax.axhline(level, color="black", lw=1.0, label=rest, zorder=1)
         self._touches(ax, [self._height(touch, level) for touch in view.touches])
         ax.set_ylabel(f"{self._name()}  [{self.unit}]")
@@ -123,6 +128,8 @@ class _Axes:
             ax.axhline(level + film, color="black", lw=1.0, ls=(0, (1, 3)))
         ax.set_xlim(*window)
         ax.set_ylim(level - 0.24 * height, level + height)
+        if np.min(view.track.value) * k > level + height:
+            ax.text(0.5, 0.5, "no frame is near the wall", transform=ax.transAxes, ha="center")
         above = f"; dotted: the film of {film:.2g} {self.unit}, speeds are of frames above" if film else ""
         ax.set_title(f"near the wall{above}", loc="left", fontsize=9)
         ax.locator_params(axis="x", nbins=5)

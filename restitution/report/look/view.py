@@ -11,7 +11,7 @@ so that a, held against free fall under the conditions, says whether the clock a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from restitution.bounce import terminal_speed
 from restitution.conditions import Conditions
+from restitution.doubts import cleaned
 from restitution.impacts import Impacts
 from restitution.impacts.speed import ReadBranch
 from restitution.tracks import Track, contacts
@@ -64,10 +65,10 @@ class Flight:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """Frames that were left out, as the file has them: times in s and values in the unit of the track."""
+    """Frames that were left out: times in s and values of the track as it was read."""
 
-    time_s: NDArray = field(default_factory=lambda: np.zeros(0))
-    value: NDArray = field(default_factory=lambda: np.zeros(0))
+    time_s: NDArray
+    value: NDArray
 
 
 @dataclass(frozen=True)
@@ -112,9 +113,7 @@ class View:
         return t[rows].mean(axis=1)[~across], slope[~across]
 
 
-def view_of(
-    track: Track, conditions: Conditions | None, impacts: Impacts | None, left_out: LeftOut | None = None
-) -> View:
+def view_of(track: Track, conditions: Conditions | None, impacts: Impacts | None) -> View:
     """What there is to see.
 
     Parameters
@@ -122,8 +121,12 @@ def view_of(
     track : positions or velocities in time.
     conditions : fluid and sphere, None where they are not known.
     impacts : what was read of the contacts, None where that was not possible.
-    left_out : frames that are not in the track.
+
+    Frames that no flight passes through are drawn as left out, as impacts leave them out.
     """
+    clean = cleaned(track)
+    left_out = LeftOut(track.time_s[clean.lost], track.value[clean.lost])
+    track = clean.track
     found = contacts(track)
     touching = found.contacts if impacts is None else impacts.contacts
     rows = {} if impacts is None else {row["impact"]: row for row in impacts.rows}
@@ -146,7 +149,7 @@ def view_of(
     if track.quantity == "gap":
         times = [touch.time_s for touch in touches]
         flights = [_flight(track, found.level or 0.0, a, b) for a, b in pairwise(times)]
-    return View(track, found.level, touches, branches, flights, left_out or LeftOut(), conditions, film)
+    return View(track, found.level, touches, branches, flights, left_out, conditions, film)
 
 
 def _in_words(row: dict) -> str:

@@ -7,7 +7,7 @@ import pytest
 from restitution.cli import main
 from restitution.conditions import Conditions
 from restitution.impacts import find_impacts
-from restitution.report.look import LeftOut, Told, pages, view_of
+from restitution.report.look import Told, pages, view_of
 from restitution.report.look.plot import thinned
 from restitution.tracks import Track
 from tests.flights import STEEL_IN_OIL
@@ -64,12 +64,11 @@ def test_no_outlier_is_lost_where_few_frames_are_drawn():
     assert drawn.min() == -9.0
 
 
-def test_doubts_and_frames_left_out_are_shown():
+def test_doubts_are_shown():
     track = Track.from_table(ballistic())
     with_doubt = Told("a.csv", doubts=["the clock is eight times too slow"])
-    lost = LeftOut(np.array([0.05]), np.array([0.03]))
     plain = pages(view_of(track, None, None), Told("a.csv"), None)
-    told = pages(view_of(track, None, None, lost), with_doubt, None)
+    told = pages(view_of(track, None, None), with_doubt, None)
     assert with_doubt.doubts[0] in told["index.html"]
     assert told["figure.png"] != plain["figure.png"]
     assert pages(view_of(track, None, None), Told("a.csv"), None) == plain  # the same bytes again
@@ -118,6 +117,14 @@ def test_input_is_not_replaced_and_a_length_in_diameters_needs_the_diameter(look
     assert look("up.csv", "--unit", "d")[0] == 2
     assert "--conditions" in look("up.csv", "--unit", "d")[2]
     assert (tmp_path / "c.toml").read_bytes() == before
+
+
+def test_a_frame_that_no_flight_passes_through_is_left_out_and_drawn_as_such():
+    table = ballistic()
+    table.loc[20, "gap_m"] += 4e-3
+    view = view_of(Track.from_table(table), STEEL_IN_OIL, None)
+    assert list(view.left_out.time_s) == [table.time_s[20]]
+    assert table.time_s[20] not in view.track.time_s
 
 
 def test_conditions_in_which_the_sphere_floats_have_no_terminal_speed():
