@@ -15,7 +15,6 @@ from numba import njit, types
 from numba.extending import intrinsic
 
 from lbm.fluid.memory import rates_scopes
-from lbm.rates import Rates
 
 _LINE = 64  # bytes in a cache line
 FACTORS = 18
@@ -37,10 +36,10 @@ class Places(NamedTuple):
     last: int
 
 
-def places(layers: Sequence[Rates], walls: Sequence[bool], shape: tuple[int, int, int], dtype) -> Places:
-    """Rates of ``layers``, counted from the faces x-, x+, ..., z+ that are ``walls``; the last for all beyond."""
+def places(layers: Sequence[tuple], walls: Sequence[bool], shape: tuple[int, int, int], dtype) -> Places:
+    """Scaled rates of ``layers``, from the faces x-, x+, ..., z+ that are ``walls`` on; the last for all beyond."""
     dtype, farthest = np.dtype(dtype), len(layers) - 1
-    table = np.array([rates.scaled(dtype) for rates in layers], dtype)
+    table = np.array(layers, dtype)
     x, y, z = (_layer(n, walls[2 * axis : 2 * axis + 2], farthest) for axis, n in enumerate(shape))
     rows = np.minimum(z[:, None], y[None, :]).astype(np.uint8)
     along = table[np.minimum(np.arange(len(layers))[:, None], x[None, :])]  # (layers, nx, factors)

@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.doubts import cleaned
     from restitution.errors import Defect, InputError
     from restitution.files import check_folder, write_folder, write_whole
-    from restitution.report.look import LeftOut, Told, pages, view_of
+    from restitution.report.look import Told, pages, view_of
 
     suffix = Path(args.out).suffix.lower() if args.out else ""
     if suffix in _FILES or args.out == "":
@@ -50,20 +50,19 @@ def run(args: argparse.Namespace) -> None:
         rule = "has bounces alone, no track to look at: restitution impacts takes it"
         raise InputError(Defect(rule, file=args.track))
     read = tracked.read(args, without_conditions=True)
-    impacts, notes, doubts, track, left_out = None, [*read.notes], cleaned(read.track).doubts, read.track, None
+    impacts, notes, doubts = None, [*read.notes], list(cleaned(read.track).doubts)
     if read.conditions is None:
         notes.append("fluid and sphere are not stated (--conditions FILE): no speeds, no St, no e_eff")
     else:
         try:
             impacts = read.impacts(args)
             notes += impacts.notes
-            doubts, track = impacts.doubts, impacts.measure.track
-            left_out = LeftOut(read.track.time_s[impacts.lost], read.track.value[impacts.lost])
+            doubts = impacts.doubts
         except InputError as error:  # a look is wanted most where impacts cannot be had
             notes += [str(defect) for defect in error.defects]
-    view = view_of(track, read.conditions, impacts, left_out)
+    view = view_of(read.track, read.conditions, impacts)
     table = None if impacts is None else impacts.table()
-    told = Told(Path(args.track).name, read.reading, notes, [str(doubt) for doubt in doubts])
+    told = Told(Path(args.track).name, read.reading, notes, [doubt.message for doubt in doubts])
     contents = pages(view, told, table)
     if read.reading:
         show(f"read: {read.reading}")
