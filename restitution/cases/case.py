@@ -53,8 +53,9 @@ class Numerics(Record):
     """Grid, box and method of the resolved run.
 
     ``lattice_speed`` is what ``reference_speed`` (m/s; by default the speed of the drive) becomes in cells a step:
-    it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high. With ``symmetry`` "quarter" two
-    mirrors meet in the axis of the fall, and a quarter of the box is computed for the whole.
+    it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high. With ``symmetry`` "quarter", the
+    default of a fall that is not ``along`` the wall too, two mirrors meet in the axis of the fall, and a quarter of
+    the box is computed for the whole.
     """
 
     cells_per_diameter: Positive
@@ -65,9 +66,9 @@ class Numerics(Record):
     sides: Literal["periodic", "no-slip", "free-slip"] = "periodic"
     top: Literal["no-slip", "free-slip", "outlet"] = "no-slip"
     precision: Literal["float32", "float64"] = "float32"
-    rates: Literal["two-relaxation-times", "dhumieres2002", "quiet", "quiet-by-place"] = "two-relaxation-times"
+    rates: Literal["two-relaxation-times", "dhumieres2002", "quiet", "quiet-by-place"] = "quiet-by-place"
     interpolation: Literal["linear", "central-linear"] = "linear"
-    symmetry: Literal["none", "quarter"] = "none"
+    symmetry: Literal["none", "quarter"] | None = None
 
 
 FilmForm = Literal["none", "lost_to_grid", "source_abstract_eq3", "nguyen_ladd_2002", "brenner_1961_difference"]
@@ -186,6 +187,12 @@ class Case(Record):
         """Gap in m at which sphere and wall touch; None where nobody states one."""
         stated = [b.roughness for b in (self.sphere, self.wall) if b is not None and b.roughness]
         return self.film.floor if self.film.floor is not None else max(stated, default=None)
+
+    @property
+    def quartered(self) -> bool:
+        """Whether a quarter of the box is computed for the whole."""
+        chosen = self.numerics.symmetry if self.numerics is not None else None
+        return chosen == "quarter" if chosen is not None else not self.release.along
 
     @property
     def reference_speed(self) -> float | None:

@@ -94,8 +94,7 @@ def set_up(case: Case) -> Setup:
 
     Raises :class:`lbm.InputError` for numbers that it refuses; warns of those it doubts.
     """
-    n, flow = case.numerics, _scales(case)
-    quarter = n.symmetry == "quarter"
+    n, flow, quarter = case.numerics, _scales(case), case.quartered
     wide = round(n.width_d * flow.length / (2 if quarter else 1))
     high = round(n.height_d * flow.length)
     # Half-way between two images of the sphere lies a plane of symmetry, so periodic sides are mirrors too.
