@@ -65,8 +65,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--drop-test", action="store_true",
-        help="lammps, liggghts, yade: drop spheres on a wall there and print the e delivered; without the program "
-        "the input that would do so",
+        help="lammps, liggghts, yade, openfoam: drop spheres on a wall there and print the e delivered; without "
+        "the program the input that would do so",
     )  # fmt: skip
     parser.add_argument("--out", metavar="FILE")
     parser.add_argument("--force", action="store_true", help="replace FILE where it exists")

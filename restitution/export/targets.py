@@ -103,7 +103,7 @@ TARGETS: dict[str, Target] = {
         _impacts(
             "openfoam",
             "OpenFOAM parcels: rebound at walls",
-            "--level 0 --speed V [--within] or --level 2",
+            "--level 0 --speed V [--within] [--drop-test] or --level 2",
             openfoam,
         ),
         _impacts("mfix", "MFIX keys: constant e", "--level 0 --speed V [--within]", mfix),
