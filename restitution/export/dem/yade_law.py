@@ -36,11 +36,16 @@ def damp_new_contacts():
         if i.iterMadeReal != O.iter:
             continue
         bodies = O.bodies[i.id1], O.bodies[i.id2]
-        moving = [b for b in bodies if isinstance(b.shape, Sphere)]
+        spheres = [b for b in bodies if isinstance(b.shape, Sphere)]
         normal = i.geom.normal
         speed = (bodies[0].state.vel - bodies[1].state.vel).dot(normal)
-        mass = 1 / sum(1 / b.state.mass for b in moving)
-        e = _restitution(speed, [(2 * b.shape.radius, b.material.density) for b in moving])
+        masses = [math.inf if b.state.blockedDOFs == "xyzXYZ" else b.state.mass for b in spheres]
+        mass = 1 / sum(1 / m for m in masses)
+        # A fixed sphere is as heavy as a wall, and as round as it is.
+        heavier = [1 if m < math.inf else 1e12 for m in masses]
+        e = _restitution(
+            speed, [(2 * b.shape.radius, k * b.material.density) for b, k in zip(spheres, heavier)]
+        )
         if e < 1:
             i.phys.cn = 2 * _ratio_of_a_contact_that_does_not_pull(e) * math.sqrt(mass * i.phys.kn)
         push = i.phys.cn * speed * normal
@@ -71,11 +76,12 @@ def yade_law(impacts: Impacts, request: Request, version: str) -> str:
         "Poeschel 2007)",
         f"tc for an overlap of 1 % of d at {fastest(impacts, request):.4g} m/s; e does not depend on it; time "
         f"step at most tc/{STEPS_A_CONTACT}",
-        "bodies that are not spheres count as walls: of infinite mass. No lubrication=True beside it",
+        "walls and facets (add Ig2_Facet_Sphere_ScGeom) are of infinite mass, fixed spheres too; no clumps. No "
+        "lubrication=True beside it",
     ]
     text = comments(impacts, "YADE", version, said) + "\n" + at_impact.functions(impacts, "python")
     return text + _DAMP.format(
-        contact="\n\n".join(inspect.getsource(f) for f in CONTACT_WITHOUT_TENSION),
+        contact="\n\n".join(inspect.getsource(f) for f in CONTACT_WITHOUT_TENSION) + "\n",
         numbers="".join(f"{name.upper()} = {value!r}\n" for name, value in fluid.items()),
         wall=at_impact.restitution_call(impacts, of, pair=False),
         pair=at_impact.restitution_call(impacts, of, pair=True),

@@ -29,7 +29,7 @@ _LONGEST_RUN = 600.0
 
 @dataclass(frozen=True)
 class Deck:
-    """``main`` is the name of the file that the program reads, ``files`` all by name."""
+    """``main`` is the name of the file that the exported text is in, ``files`` all by name."""
 
     main: str
     files: Mapping[str, str]
@@ -59,6 +59,8 @@ class Program:
     """What the exported text says that it delivers, at Stokes numbers of the law."""
     find: Callable[[int], Installed]
     """For a level; raises :class:`NotInstalledError`."""
+    levels: tuple[int, ...] = (0, 1, 2)
+    """Those that can be run."""
 
 
 def run_deck(deck: Deck, program: Installed, drops: int) -> NDArray:
@@ -71,6 +73,7 @@ def run_deck(deck: Deck, program: Installed, drops: int) -> NDArray:
     environment = os.environ | dict(program.environment)
     with tempfile.TemporaryDirectory() as folder:
         for name, text in deck.files.items():
+            (Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
             (Path(folder) / name).write_text(text)
         said = ""
         for command in program.commands(deck):

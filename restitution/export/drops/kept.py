@@ -26,8 +26,6 @@ CONSTANT_AT = 100.0
 """The Stokes number that the constant of level 0 is taken at."""
 WITHIN = 0.02
 """Error of e that the range of that constant is stated for."""
-LEVELS = (0, 1, 2)
-
 _NEEDED = Constraints(required=True)
 _E = Constraints(required=True, minimum=0.0, maximum=1.0)
 SCHEMA = Schema(
@@ -80,7 +78,7 @@ def measure(
     """Run the programs that are installed at every level; of the others the kept rows stay."""
     rows, impacts, today = [], steel(), datetime.date.today().isoformat()
     for key, program in programs:
-        for level in LEVELS:
+        for level in program.levels:
             try:
                 version, drops = drop_test(key, program, impacts, request_of(level)).run()
             except NotInstalledError as error:

@@ -78,7 +78,7 @@ def openfoam(impacts: Impacts, request: Request) -> str:
 def _entries(impacts: Impacts, request: Request) -> str:
     constant = constant_of(impacts, request)
     said = [
-        NOT_TRIED,
+        "tried: the first form with OpenFOAM 1912 of Debian, parcels without force; the second was not",
         *range_lines(impacts, constant),
         "for point parcels, in constant/kinematicCloudProperties (or the cloud's own); of the newer library of "
         "OpenFOAM dev in the patch of the velocity U of the cloud. Sliding: mu = 0, none is lost",

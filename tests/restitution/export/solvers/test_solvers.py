@@ -132,7 +132,7 @@ def test_codes_with_a_film_get_e_dry_and_a_least_gap():
 def test_every_text_says_what_it_was_not_tried_with(to):
     rebound = to in ("openfoam", "mfix", "openlb")
     exported = text(to, "eq4_exponential" if rebound else "roughness", 2 if to == "openlb" else 0, 0.3, cells=10)
-    assert "not tried" in exported
+    assert "not tried" in exported or "the second was not" in exported
 
 
 @pytest.mark.parametrize(
