@@ -37,7 +37,7 @@ class Places(NamedTuple):
 
 
 def places(layers: Sequence[tuple], walls: Sequence[bool], shape: tuple[int, int, int], dtype) -> Places:
-    """Scaled rates of ``layers``, from the faces x-, x+, ..., z+ that are ``walls`` on; the last for all beyond."""
+    """Scaled rates of ``layers``, counted from the faces x-, ..., z+ that are ``walls``, the last beyond."""
     dtype, farthest = np.dtype(dtype), len(layers) - 1
     table = np.array(layers, dtype)
     x, y, z = (_layer(n, walls[2 * axis : 2 * axis + 2], farthest) for axis, n in enumerate(shape))

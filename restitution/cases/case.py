@@ -53,9 +53,9 @@ class Numerics(Record):
     """Grid, box and method of the resolved run.
 
     ``lattice_speed`` is what ``reference_speed`` (m/s; by default the speed of the drive) becomes in cells a step:
-    it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high. With ``symmetry`` "quarter", the
-    default of a fall that is not ``along`` the wall too, two mirrors meet in the axis of the fall, and a quarter of
-    the box is computed for the whole.
+    it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high. With ``symmetry`` "quarter",
+    the default of a fall that is not ``along`` the wall too, two mirrors meet in the axis of the fall, and a
+    quarter of the box is computed for the whole.
     """
 
     cells_per_diameter: Positive
