@@ -39,7 +39,7 @@ def draw(view: View, title: str, remarks: Sequence[str] = ()) -> Drawing:
     below = 0.19 * len(lines) + 0.1 if lines else 0.01
     with style():
         figure = Figure(figsize=(9.6, 7.4 + below), layout="constrained")
-        top, bottom = figure.subfigures(2, 1, height_ratios=(7.4, below))
+        top, bottom = np.ravel(figure.subfigures(2, 1, height_ratios=(7.4, below)))
         axes = _Axes(view)
         if view.track.quantity == "gap":
             panels = top.subplot_mosaic([["all", "all"], ["near", "speed"]], height_ratios=(1.35, 1))
