@@ -1,7 +1,8 @@
 """The first rebound at St 152 by cells a diameter and lattice speed, in a box that is quick to run.
 
 The case `gondret_st152_10` with a way of 4 d, too short for the wake to form, in a box 5 d wide and 6 d high; the
-table gives the speeds at contact, the gap 8.4 ms later and the mean speed from 4.4 ms on. Compressibility falls
+table gives the speeds at contact, the restitution at the edges 0.1, 0.2 and 0.3 d of a film (both speeds carried
+to the wall by free fall), the gap 8.4 ms later and the mean speed from 4.4 ms on. Compressibility falls
 with the lattice speed; so does the viscosity in lattice units, below some 0.0015 of which the sphere is slowed.
 The point particle of the same case, with potential flow's added mass, all of Brenner's resistance and a history
 force, stands below.
@@ -27,6 +28,8 @@ from restitution.runs.resolved import ResolvedRun
 
 GRIDS = ("10:0.05", "10:0.025", "10:0.0125", "16:0.025", "20:0.05", "20:0.025", "20:0.0125")
 EARLY_S, LATE_S = 4.4e-3, 8.4e-3
+EDGES = (0.1, 0.2, 0.3)
+"""Of the film, in diameters."""
 
 
 def short(cells: int, lattice_speed: float) -> Case:
@@ -44,21 +47,36 @@ def short(cells: int, lattice_speed: float) -> Case:
     )
 
 
-def rebound(cells: int, lattice_speed: float) -> tuple[float, float, float, float]:
-    """Speeds at the wall before and after contact and mean speed later in m/s, and the gap then in m."""
+def rebound(cells: int, lattice_speed: float) -> tuple[float, ...]:
+    """Speeds at the wall before and after contact in m/s, e at the edges, mean speed later, the gap then in m."""
     run = ResolvedRun(short(cells, lattice_speed))
     while not run.finished:
         run.advance()
     contact = run.contacts[0]
-    return contact.speed_in_m_s, contact.speed_out_m_s, *_later(run.motion())
+    return contact.speed_in_m_s, contact.speed_out_m_s, *_at_edges(run.motion()), *_later(run.motion())
 
 
-def point_particle(wake: OwnWake | None) -> tuple[float, float, float, float]:
+def point_particle(wake: OwnWake | None) -> tuple[float, ...]:
     """The same of the point particle."""
     case = short(10, 0.025)
-    path = predict(case, closures=replace(closures_of(case), wake=wake))
-    contact = path.contacts[0]
-    return contact["speed_in_m_s"], contact["speed_out_m_s"], *_later(path.table())
+    found = predict(case, closures=replace(closures_of(case), wake=wake))
+    contact, motion = found.contacts[0], found.table()
+    return contact.speed_in_m_s, contact.speed_out_m_s, *_at_edges(motion), *_later(motion)
+
+
+def _at_edges(motion: pd.DataFrame) -> list[float]:
+    """The restitution at each of :data:`EDGES`: speeds there, carried to the wall by free fall."""
+    conditions, found = short(10, 0.025).conditions, []
+    time, gap = motion.time_s.to_numpy(), motion.gap_m.to_numpy()
+    v = motion["vz_m_s" if "vz_m_s" in motion else "velocity_m_s"].to_numpy()
+    for edge in EDGES:
+        height = edge * conditions.sphere.diameter
+        fallen = 2 * conditions.free_fall * height
+        coming, going = (time < 0) & (gap < 2 * height), (time > 0) & (gap < 2 * height) & (v > 0)
+        into = np.interp(-height, -gap[coming], v[coming])
+        out = np.interp(height, gap[going], v[going])
+        found.append(float(np.sqrt((out**2 + fallen) / (into**2 + fallen))))
+    return found
 
 
 def _later(motion: pd.DataFrame) -> tuple[float, float]:
@@ -71,7 +89,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("grids", nargs="*", default=GRIDS, metavar="CELLS:LATTICE_SPEED")
     console = Console(width=110)
-    table = Table("cells", "lattice speed", "in m/s", "out m/s", "4.4 to 8.4 ms m/s", "gap at 8.4 ms mm")
+    edges = (f"e at {edge:g} d" for edge in EDGES)
+    table = Table("cells", "speed", "in m/s", "out m/s", *edges, "4.4 to 8.4 ms m/s", "gap at 8.4 ms mm")
     for grid in track(parser.parse_args().grids, "runs", console=console, transient=True):
         cells, speed = grid.split(":")
         table.add_row(cells, speed, *_shown(rebound(int(cells), float(speed))))

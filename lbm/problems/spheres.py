@@ -250,7 +250,7 @@ def settling(
         [Sphere(radius, sphere.density / fluid.density, (shape[0] / 2, shape[1] / 2, 0.12 / dx + radius))],
         gravity=(0.0, 0.0, -conditions.gravity * dt**2 / dx),
         film=film(radius, viscosity),
-        contact=DryRebound(0.5, 2 / 3 * math.pi * radius**3),
+        contact=DryRebound(0.5, 2 / 3 * math.pi * radius**3, diameter, viscosity),
     )
     flow.add(ball)
     flow.run(int(duration / dt))
@@ -290,7 +290,7 @@ def rebound(
         [Sphere(radius, ratio, centre)],
         gravity=(0.0, 0.0, -(speed**2) / (2 * diameter)),
         film=film(radius, viscosity, floor=1e-3 * radius),
-        contact=DryRebound(0.97, 2 / 3 * math.pi * radius**3),
+        contact=DryRebound(0.97, 2 / 3 * math.pi * radius**3, diameter, viscosity),
         drive=drive,
         fraction=fraction,
     )

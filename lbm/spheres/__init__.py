@@ -7,13 +7,14 @@ motion of its own (:mod:`~lbm.spheres.motion`, :mod:`~lbm.spheres.carried`).
 :mod:`~lbm.spheres.sampling` tells one film or contact from another, for checkpoints.
 """
 
-from lbm.spheres.contact import Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
+from lbm.spheres.contact import SETTLED, Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass
 from lbm.spheres.film import RESOLVED, Film, lost_to_grid
 from lbm.spheres.spheres import COLUMNS, Sphere, SphereImpact, Spheres
 
 __all__ = [
     "COLUMNS",
     "RESOLVED",
+    "SETTLED",
     "Contact",
     "DryRebound",
     "Film",

@@ -21,6 +21,12 @@ from lbm import arguments
 from lbm.errors import InputError
 from lbm.spheres.sampling import sampled
 
+SETTLED = 2.5
+"""Time in d/c_s after which the lattice's fluid has answered to a sphere that is reversed at once.
+
+The exact force of sound on a sphere that jumps to another velocity falls as exp(-c_s t/a) cos(c_s t/a): its
+impulse is then within 1 % of its end. Beside a wall it takes longer.
+"""
 _SPEEDS = (1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
 """Speeds in cells a step at which a description samples a contact's law."""
 _BOUNCES = range(6)
@@ -51,7 +57,7 @@ class FilmRebound:
     ----------
     rebound : ``rebound(approach_speed, count)`` gives the speed after impact ``count`` (from 0), in cells a step.
     edge : gap in cells outside which the law's speeds are those of the motion.
-    free_fall : acceleration towards the wall on the way out, in cells a step^2, not negative.
+    free_fall : acceleration towards the wall within the edge, in cells a step^2, not negative.
 
     Raises
     ------
@@ -60,11 +66,11 @@ class FilmRebound:
 
     Notes
     -----
-    Both speeds are those of the motion outside the film, gap >= ``edge``, carried to the wall. The law speaks
-    of the whole film, so within it the law moves the sphere and the fluid follows: inwards with the velocity
-    at the edge and the mean acceleration of the last ``edge`` before it, outwards from the rebound speed with
-    the acceleration ``-free_fall``. What the fluid does to the sphere meanwhile, the reversal of the fluid
-    around it included, is part of what the law was measured to sum up.
+    Both speeds are those of the motion outside the film, gap >= ``edge``, carried to the wall by free fall. The
+    law speaks of the whole film, so within it the sphere falls freely, inwards and outwards, and the fluid
+    follows. What the fluid does to the sphere meanwhile, the reversal of the fluid around it included, is part
+    of what the law was measured to sum up. A rebound that would be back within one step ends in rest, until the
+    fluid lifts the sphere.
     """
 
     rebound: Callable[[float, int], float]
@@ -94,6 +100,8 @@ class DryRebound:
     ----------
     e_dry : in (0, 1].
     added_mass : of the fluid around the touching sphere, in lattice units; see :func:`lattice_added_mass`.
+    diameter : of the sphere, in cells.
+    viscosity : kinematic, of the fluid.
 
     Raises
     ------
@@ -103,22 +111,42 @@ class DryRebound:
     Notes
     -----
     The fluid around the sphere, ``added_mass``, is reversed with it. What that takes comes not from the sphere
-    but from the wall, as for any body that carries other mass along; see :mod:`lbm.spheres.wall_motion`.
+    but from the wall, as for any body that carries other mass along. The lattice's fluid answers to the reversal
+    with sound first; until that is gone, :attr:`settling` steps, the sphere has the force of a liquid's answer,
+
+        F = -history dv/(2 sqrt(t)),   history = 12 sqrt(pi nu) a^2,
+
+    Basset's of a jump dv of the velocity, in place of the lattice's; see :mod:`lbm.spheres.wall_motion`.
     """
 
     e_dry: float
     added_mass: float
+    diameter: float
+    viscosity: float
 
     def __post_init__(self) -> None:
         arguments.positive("e_dry", self.e_dry)
         if self.e_dry > 1:
             raise InputError(f"e_dry = {self.e_dry:g}: must not exceed 1")
-        if not self.added_mass >= 0:
-            raise InputError(f"added_mass = {self.added_mass:g}: must not be negative")
+        arguments.positive("diameter", self.diameter)
+        for name in ("added_mass", "viscosity"):
+            if not getattr(self, name) >= 0:
+                raise InputError(f"{name} = {getattr(self, name):g}: must not be negative")
+
+    @property
+    def settling(self) -> float:
+        """Steps after a reversal in which sound still decides the lattice's force."""
+        return SETTLED * self.diameter / arguments.SPEED_OF_SOUND
+
+    @property
+    def history(self) -> float:
+        """Impulse that the liquid takes, beside added mass, over the jump of velocity and the root of time."""
+        return 3 * math.sqrt(math.pi * self.viscosity) * self.diameter**2
 
     def describe(self) -> dict:
         """Every number of the contact."""
-        return {"kind": type(self).__name__, "e_dry": float(self.e_dry), "added_mass": float(self.added_mass)}
+        numbers = {name: float(getattr(self, name)) for name in ("e_dry", "added_mass", "settling", "history")}
+        return {"kind": type(self).__name__, **numbers}
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,11 @@ whatever the fluid's step, and the moment of contact falls where it falls.
 
 Film and contact change the velocity within less time than sound needs to pass the sphere on the lattice. In
 the liquid that is no time at all: they act on sphere and added mass m_a together. So with a
-:class:`lbm.spheres.spheres.contact.DryRebound` they do here, and since the lattice's fluid asks the sphere for the
-impulse m_a (change of velocity) only afterwards, that impulse is kept as a debt and the fluid's force is not
-passed on to the sphere until it is paid. The principle has no time or number of steps to choose.
+:class:`lbm.spheres.spheres.contact.DryRebound` they do here. Since the lattice's fluid asks the sphere for the
+impulse m_a (change of velocity) only afterwards, what the film owes is kept as a debt, and the fluid's force is
+not passed on to the sphere until it is paid. After a rebound the fluid answers with sound to and fro, and with a
+layer that is thinner than a cell; what it asks for the added mass is not told from that by its sign or size. So
+until sound is gone the sphere has a liquid's force of the jump, Basset's, and then the lattice's again.
 """
 
 from __future__ import annotations
@@ -115,20 +117,35 @@ class FilmMotion(Motion):
 class DryMotion(FilmMotion):
     """The motion of :class:`lbm.spheres.spheres.contact.DryRebound`.
 
-    It also remembers the impulse ``owed``, which film and wall have still to pay to the fluid.
+    It also remembers the impulse ``owed``, which the film has still to pay to the fluid; and the ``jump`` of the
+    velocity at the last rebound with the time ``since`` then, as long as sound decides the fluid's force.
     """
 
-    remembered = ("onset", "owed")
+    remembered = ("onset", "owed", "jump", "since")
 
     def __init__(self, film: Film | None, contact: DryRebound, fraction: float):
         super().__init__(film, contact, fraction)
         self.added_mass = contact.added_mass
         self.owed = 0.0
+        self.jump = self.since = math.nan
+
+    def matters(self, gap, v):
+        """Also until the fluid has answered to the last rebound."""
+        return not math.isnan(self.since) or super().matters(gap, v)
 
     def _passed_on(self, fluid):
+        if not math.isnan(self.since):
+            return self._liquid_answer()
         paid = min(max(-fluid, min(self.owed, 0.0)), max(self.owed, 0.0))
         self.owed -= paid
         return fluid + paid
+
+    def _liquid_answer(self) -> float:
+        """Basset's force of the jump, its mean over the step; the first one from the jump on."""
+        begin, end = self.since if self.since > 1 else 0.0, self.since + 1
+        self.since = end if end < self.contact.settling else math.nan
+        self.owed = 0.0
+        return -self.contact.history * self.jump * (math.sqrt(end) - math.sqrt(begin))
 
     def _end(self, sub, force, mass):
         begin, dt, gap, v, new_gap, new_v = sub
@@ -142,7 +159,7 @@ class DryMotion(FilmMotion):
         if force < 0 and -2 * v_out * mass / force < 1:
             # It would be back within one step: at rest on the wall until something lifts it.
             return math.inf, self.touch, 0.0, Impact(moment, v_in, 0.0) if v != 0 else None
-        self.owed += self.added_mass * (v_out + v_in)
+        self.jump, self.since = v_out + v_in, 1 - moment
         self.onset = math.nan
         return moment, self.touch, v_out, Impact(moment, v_in, v_out)
 

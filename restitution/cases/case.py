@@ -26,9 +26,11 @@ from restitution.conditions import (
     Velocity,
     Wall,
 )
+from restitution.stokes import WIDEST_FILM
 from restitution.units import measured
 
 Restitution = Annotated[float, Field(ge=0, le=1, strict=True)]
+EdgeOfFilm = Annotated[float, Field(gt=0, le=WIDEST_FILM, strict=True)]
 
 
 class Release(Record):
@@ -104,6 +106,10 @@ class ContactModel(Record):
     ``soft_linear``, ``soft_hertz``: a contact of e_dry stretched over ``duration_steps``. None has friction: along
     the wall the sphere feels the fluid alone.
 
+    ``edge_d`` is the edge of the film in diameters within which e_eff stands for every viscous force, so that the
+    sphere falls freely: by default the one that the law's constants belong to, else 0.1. ``law_edge_d`` says which
+    that is where the law does not; at another edge than its own a law is converted by the point particle.
+
     ``added_mass`` is the fluid that is reversed with the sphere, over the fluid it displaces: 0.803 in potential
     flow about a sphere that touches a wall. By default it is what the lattice makes of that at its resolution.
     """
@@ -112,6 +118,8 @@ class ContactModel(Record):
     law: str | None = None
     parameters: dict[str, float] = Field(default_factory=dict)
     measured: Literal["record"] | Annotated[tuple[Restitution, ...], Field(min_length=1)] | None = None
+    edge_d: EdgeOfFilm | None = None
+    law_edge_d: EdgeOfFilm | None = None
     duration_steps: Positive | None = None
     added_mass: NonNegative | None = None
 

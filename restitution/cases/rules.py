@@ -122,15 +122,17 @@ def _contact(case: Case) -> Iterator[Finding]:
         yield "film.form", case.film.form, rule
     if c.measured == "record" and case.record is None:
         yield "contact.measured", "record", "needs the case to name a record"
-    used = {"law", "parameters", "measured"} if effective else set()
+    used = {"law", "parameters", "measured", "edge_d", "law_edge_d"} if effective else set()
     used |= {"duration_steps"} if c.mode.startswith("soft") else set()
-    for name in ("law", "parameters", "measured", "duration_steps"):
+    for name in ("law", "parameters", "measured", "edge_d", "law_edge_d", "duration_steps"):
         if name not in used and getattr(c, name):
             yield f"contact.{name}", getattr(c, name), f"is not used by the mode {c.mode!r}: leave it out"
     if c.mode.startswith("soft") and c.duration_steps is None:
         yield "contact.duration_steps", None, f"is missing: the mode {c.mode!r} needs it"
+    if effective and c.law_edge_d is not None and c.law is None:
+        yield "contact.law_edge_d", f"{c.law_edge_d:g}", "needs a law: measured values are those of contact.edge_d"
     if effective and c.law is not None:
-        yield from _law(c.law, c.parameters)
+        yield from _law(c.law, c.parameters, c.law_edge_d)
 
 
 def _study(case: Case) -> Iterator[Finding]:
@@ -147,11 +149,14 @@ def _study(case: Case) -> Iterator[Finding]:
         yield "study.series", study.series, rule
 
 
-def _law(name: str, parameters: dict[str, float]) -> Iterator[Finding]:
+def _law(name: str, parameters: dict[str, float], edge_d: float | None) -> Iterator[Finding]:
     try:
-        laws.get_rebound(name, **parameters)
+        law = laws.get_rebound(name, **parameters)
     except InputError as error:
         yield "contact.law", name, str(error)
+        return
+    if edge_d is not None and law.edge not in (None, edge_d):
+        yield "contact.law_edge_d", f"{edge_d:g}", f"is not that of {name}, {law.edge:g} d: leave it out"
 
 
 def _resolution(case: Case) -> Iterator[Finding]:

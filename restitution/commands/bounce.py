@@ -14,10 +14,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="predict a case in milliseconds: the same sphere as a point particle, from closures",
         description="Run a case, the same file as for 'simulate', with the point-particle model. Writes "
         "trajectory.csv, velocity.csv and impacts.csv in the schemas of the measured data, and run.json.",
-        epilog="Contact mode 'effective' takes e_eff by its law or as measured, the film within 0.1 d being a "
-        "black box; 'dry' takes e_dry at film.floor under all of Brenner's resistance, whatever film.form adds "
-        "to a grid, and under none of it with 'none'; film.tension limits the suction. Soft contacts are refused. "
-        "[numerics] is not needed.",
+        epilog="Contact mode 'effective' takes e_eff by its law or as measured, the film within contact.edge_d "
+        "(0.1 d) being a black box; 'dry' takes e_dry at film.floor under all of Brenner's resistance, whatever "
+        "film.form adds to a grid, and under none of it with 'none'; film.tension limits the suction. Soft "
+        "contacts are refused. [numerics] is not needed.",
     )
     parser.add_argument(
         "case", metavar="CASE", help="a TOML file, or the name of a shipped case (see 'simulate --list')"

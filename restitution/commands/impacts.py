@@ -31,8 +31,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "name of a shipped record; or a table of bounces and their times, or apexes, alone",
     )
     tracked.add_options(parser)
-    flights.add_options(parser)
     options.add_strict(parser)
+    flights.add_options(parser)
     parser.add_argument("--out", metavar="FILE", help="also write the impacts, as CSV")
     parser.add_argument(
         "--template", metavar="FOLDER", help="write track.csv, conditions.toml, settings.toml to start from"

@@ -29,15 +29,16 @@ if TYPE_CHECKING:
 class Impacts:
     """Rows of the impact table, the noise that was used, what could not be evaluated and why, what is doubtful.
 
-    ``contacts`` are those that were evaluated by ``measure``, in order: impact 1, 2, ...
+    ``contacts`` are those that were evaluated by ``measure``, in order: impact 1, 2, ...; the track of ``measure``
+    is without its mistracked frames.
     """
 
     rows: list[dict] = field(repr=False)
     sigma: float
     notes: list[str]
+    doubts: list[Doubt]
     contacts: list[Contact] = field(repr=False)
     measure: SpeedMeasure = field(repr=False)
-    doubts: list[Doubt] = field(default_factory=list)
 
     def table(self) -> pd.DataFrame:
         """The rows as a table with the columns of the impact schema."""
@@ -109,7 +110,7 @@ def find_impacts(
             {"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, edge, stokes)
         )
     doubts = [*clean.doubts, *of_track(track, found, conditions, record)]
-    return Impacts(rows, track.sigma, notes, touches, measure, doubts)
+    return Impacts(rows, track.sigma, notes, doubts, touches, measure)
 
 
 def _remarks(track: Track, found: Contacts) -> list[str]:

@@ -13,12 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution import laws
+from restitution.bounce.edges import LawAtEdge, carried, law_at
 from restitution.cases.case import Case, FilmModel
 from restitution.cases.rules import ALONG
 from restitution.laws.cavitation import CavitatingFilm, film_edge
+from restitution.laws.rebound import ReboundLaw
 from restitution.laws.source_abstract_eq3 import lubrication_force
 from restitution.runs.measured import measured_restitution
-from restitution.stokes import Speed, StokesNumber
+from restitution.stokes import H_FILM, Speed, StokesNumber
 
 Normal = Callable[[float, float, float], float]
 Tangential = Callable[[float, NDArray, NDArray, NDArray], tuple[NDArray, NDArray]]
@@ -95,21 +97,47 @@ def tangential_force(film: FilmModel, *, r: float, mu: float) -> Tangential | No
     return along
 
 
+def edge_of(case: Case) -> float:
+    """The edge in diameters within which e_eff stands for the film: of the case, of its law, or 0.1."""
+    c = case.contact
+    if c.edge_d is not None:
+        return c.edge_d
+    own = None if c.law is None else c.law_edge_d or laws.get_rebound(c.law).edge
+    return H_FILM if own is None else own
+
+
+def effective_law(case: Case) -> ReboundLaw | LawAtEdge:
+    """The law of a case as it is used at :func:`edge_of`."""
+    c = case.contact
+    return law_at(laws.get_rebound(c.law, **c.parameters), edge_of(case), c.law_edge_d)
+
+
+def measured_values(case: Case, wake: bool | None = None) -> tuple[float, ...]:
+    """The measured restitutions of a case; of a record those of its edge, see :mod:`restitution.runs.measured`."""
+    c = case.contact
+    return measured_restitution(case.record, edge_of(case), wake) if c.measured == "record" else c.measured
+
+
 def rebound(case: Case, unit: float) -> Callable[[float, int], float]:
     """Rebound speed of an approach speed outside the film, both in units of ``unit`` m/s, and bounce number.
 
+    Both are carried to the wall by the lattice's free fall, which has the added mass of a sphere far from it; the
+    law is asked at the speed that the point particle, with the wall's, has there for the same speed at the edge.
     With measured values the sphere stays at the wall after the last of them.
     """
-    c, conditions = case.contact, case.conditions
-    if c.law is None:
-        measured = measured_restitution(case.record) if c.measured == "record" else c.measured
+    conditions, edge = case.conditions, edge_of(case)
+    if case.contact.law is None:
+        measured = measured_values(case)
         return lambda v, count: v * (measured[count] if count < len(measured) else 0.0)
-    law = laws.get_rebound(c.law, **c.parameters)
+    law = effective_law(case)
+    fallen = 2 * conditions.free_fall * edge * case.sphere.diameter
 
     def by_law(v: float, count: int) -> float:
         if v <= 0:
             return 0.0
-        St = StokesNumber.from_speed(v * unit, conditions, "st", Speed.FAR).read_as(law.speed)
+        square = (v * unit) ** 2 - fallen
+        at_wall = carried(conditions, math.sqrt(square), edge) if square > 0 else v * unit
+        St = StokesNumber.from_speed(at_wall, conditions, "st", Speed.FAR).read_as(law.speed)
         return float(v * law(St, case.sphere.e_dry, conditions, out_of_range="ignore"))
 
     return by_law

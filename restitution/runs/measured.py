@@ -1,29 +1,50 @@
 """e_eff of each bounce of a measured record, for a simulation that is given the measured values.
 
-The definition is ``far``, that of :class:`lbm.spheres.contact.FilmRebound`; bounces that stay within the film,
-which ``far`` does not see, are taken by ``contact``. A bounce that neither resolves ends the list.
+They are those of whole trajectories (:mod:`restitution.calibration.trajectories.whole_trajectories`), the film a
+black box within one edge, as it is in the simulation: every frame tells of them, where the slopes beside a contact
+do not see a wake that dies out within two frames. They are kept in ``restitutions.csv`` by record, edge and model,
+written by ``python -m benchmarks.film_edges --write``.
 """
 
 from __future__ import annotations
 
+import csv
 from functools import cache
+from pathlib import Path
 
 from restitution.errors import InputError
-from restitution.impacts.shipped import impacts_of
-from restitution.stokes import Speed
+
+RESTITUTIONS = Path(__file__).with_name("restitutions.csv")
+
+
+def measured_restitution(record: str, edge_d: float, wake: bool | None = None) -> tuple[float, ...]:
+    """e_eff of bounce 1, 2, ... of a shipped record.
+
+    Parameters
+    ----------
+    record : its name.
+    edge_d : of the film, in diameters.
+    wake : of the model that the flights are continued with: whether the sphere meets the wake of its approach;
+        None: where the flow is resolved, the model that the frames of the record prefer.
+
+    Raises
+    ------
+    InputError
+        For a record without bounces, and for an edge that the table lacks.
+    """
+    found = [row for row in _table() if row["record"] == record]
+    if not found:
+        raise InputError(f"{record}: no rebound is resolved, so there are no measured values to use")
+    rows = [row for row in found if float(row["film_edge_d"]) == edge_d]
+    if not rows:
+        known = ", ".join(dict.fromkeys(row["film_edge_d"] for row in found))
+        raise InputError(f"{record}: measured values are known for edges of the film of {known} d, not {edge_d:g}")
+    if wake is None:
+        wake = bool(int(max(rows, key=lambda row: float(row["ln_evidence"]))["wake"]))
+    return tuple(float(row["e_eff"]) for row in rows if int(row["wake"]) == wake)
 
 
 @cache
-def measured_restitution(record: str) -> tuple[float, ...]:
-    """e_eff of bounce 1, 2, ... of a shipped record; raises :class:`InputError` for one without bounces."""
-    found: dict[int, float] = {}
-    for speed in (Speed.CONTACT, Speed.FAR):
-        for row in impacts_of(record, speed).rows:
-            if "e_eff" in row:
-                found[row["impact"]] = row["e_eff"]
-    bounces = []
-    while len(bounces) + 1 in found:
-        bounces.append(found[len(bounces) + 1])
-    if not bounces:
-        raise InputError(f"{record}: no rebound is resolved, so there are no measured values to use")
-    return tuple(bounces)
+def _table() -> list[dict[str, str]]:
+    with RESTITUTIONS.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))

@@ -13,7 +13,8 @@ film, any other form         all of Brenner's resistance down to the floor: what
                              a grid is complete here
 film ``floor``               gap of contact
 film ``tension``             the film cavitates as the sphere leaves; without it, it holds
-contact ``effective``        e_eff by law or as measured; the film within 0.1 d is a black box
+contact ``effective``        e_eff by law or as measured; the film within ``edge_d`` is a black box, and the
+                             measured values of a record are those of the model without wake
 contact ``dry``              e_dry at the floor
 contact ``soft_*``           refused: a contact here takes no time
 ``[run]``                    as it is
@@ -34,13 +35,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from restitution import laws
 from restitution.bounce import Closures, Drive, Release, Trajectory, bounce, terminal_speed
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError
 from restitution.files import write_folder
+from restitution.runs.closures import edge_of, effective_law, measured_values
 from restitution.runs.filmed import filmed, simulated_impacts
-from restitution.runs.measured import measured_restitution
 from restitution.runs.record import POINT_PARTICLE, RunRecord, SolverContact
 from restitution.runs.validity.program import program_hash
 from restitution.stokes import StokesNumber
@@ -114,10 +114,9 @@ def closures_of(case: Case, file: str = "") -> Closures:
         rule = "stretches a contact in time, which takes none for a point particle: use 'dry' or 'effective'"
         raise InputError(Defect(rule, file=place, field="contact.mode", value=contact.mode))
     if contact.law is None:
-        measured = measured_restitution(case.record) if contact.measured == "record" else contact.measured
-        return Closures(measured=measured)
+        return Closures(measured=measured_values(case, wake=False), film=edge_of(case))
     try:
-        return Closures(rebound=laws.get(contact.law, **contact.parameters), e_dry=e_dry)
+        return Closures(rebound=effective_law(case), e_dry=e_dry, film=edge_of(case))
     except InputError as error:
         raise _at(error, place) from None
 

@@ -22,7 +22,7 @@ from lbm.observers import DivergenceGuard, FieldOutput
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError, StoppedError
 from restitution.runs.record import SolverContact
-from restitution.runs.setup import fall_time, set_up
+from restitution.runs.setup import check_edge, fall_time, set_up
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,6 +51,7 @@ class ResolvedRun:
             except lbm.InputError as error:
                 raise InputError(Defect(str(error), file=file or case.name, field="numerics")) from None
         self.flow = self.setup.flow
+        check_edge(self.setup, file or case.name)
         self.warnings += [str(w.message) for w in caught]
         self.guard = DivergenceGuard()
         self._unguarded = 0

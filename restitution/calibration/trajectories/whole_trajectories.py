@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,7 +113,7 @@ class WholeTrajectory:
         r, per_speed = self.recording, convention(stokes).per_speed(self.recording.conditions)
         v, e, C = self.impact_moments()
         outside = self.outside()
-        about = {
+        about: dict[str, Any] = {
             "record": r.name, "kind": "measured", "outcome": "rebound", "speed_definition": str(Speed.FAR),
             "film_edge_d": self.edge,
             "stokes_convention": stokes, "e_dry": r.conditions.sphere.e_dry,

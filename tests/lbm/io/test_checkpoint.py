@@ -218,7 +218,7 @@ def _driven(speed, below=2.0):
 FALLING = {
     "gravity": (0.0, 0.0, -1e-4),
     "film": _film(),
-    "contact": DryRebound(0.97, 60.0),
+    "contact": DryRebound(0.97, 60.0, 10.0, 0.0),
     "drive": _driven(0.02),
 }
 LAW = FilmRebound(lambda speed, count: 0.7 * speed, 0.5, 1e-4)
@@ -227,8 +227,8 @@ LAW = FilmRebound(lambda speed, count: 0.7 * speed, 0.5, 1e-4)
 @pytest.mark.parametrize(
     ("one", "other", "named"),
     [
-        ({}, {"contact": DryRebound(0.5, 60.0)}, r"contact\.e_dry = 0\.97, this simulation has 0\.5"),
-        ({}, {"contact": DryRebound(0.97, 61.0)}, "contact.added_mass"),
+        ({}, {"contact": DryRebound(0.5, 60.0, 10.0, 0.0)}, r"contact\.e_dry = 0\.97, this simulation has 0\.5"),
+        ({}, {"contact": DryRebound(0.97, 61.0, 10.0, 0.0)}, "contact.added_mass"),
         ({}, {"contact": None}, "contact"),
         ({}, {"contact": SoftContact.linear(0.97, 900.0, 20.0)}, "contact"),
         ({}, {"film": None}, "film"),

@@ -117,6 +117,17 @@ BAD = {
     "loss counted twice": ('mode = "dry"', 'mode = "effective"\nlaw = "legendre_2005"', "film.form"),
     "measured without a record": ('mode = "dry"', 'mode = "effective"\nmeasured = "record"', "contact.measured"),
     "restitution above one": ('mode = "dry"', 'mode = "effective"\nmeasured = [1.2]', "contact.measured"),
+    "edge of a film that acts": ('mode = "dry"', 'mode = "dry"\nedge_d = 0.2', "contact.edge_d"),
+    "edge beyond any film": (
+        'mode = "dry"',
+        'mode = "effective"\nmeasured = [0.8]\nedge_d = 1.5',
+        "contact.edge_d",
+    ),
+    "edge of no law": (
+        'mode = "dry"',
+        'mode = "effective"\nmeasured = [0.8]\nlaw_edge_d = 0.2',
+        "contact.law_edge_d",
+    ),
     "soft without duration": ('mode = "dry"', 'mode = "soft_linear"', "contact.duration_steps"),
     "key of another mode": ('mode = "dry"', 'mode = "dry"\nduration_steps = 20', "contact.duration_steps"),
     "no end": ("after_contact = 0.1", "", "run.after_contact"),

@@ -54,7 +54,8 @@ def test_every_choice_of_a_case_occurs_in_a_probe(path, value):
 
 def test_optional_numbers_occur_in_probes_too():
     wanted = ("release.along", "film.tension", "film.tangential", "film.cut_off_cells", "contact.law",
-              "contact.added_mass", "contact.duration_steps", "run.after_contact", "run.duration")  # fmt: skip
+              "contact.edge_d", "contact.law_edge_d", "contact.added_mass", "contact.duration_steps",
+              "run.after_contact", "run.duration")  # fmt: skip
     for path in wanted:
         assert any(value_at(case, path) for case in physics.probe_cases()), path
 
