@@ -128,7 +128,10 @@ def _columns(table: ForeignTable, names: dict[str, str]) -> tuple[Kind, dict[str
         time, apex = one_of(TIMES), one_of(APEXES)
         if any(table.column(name) for name in _NO_FLIGHTS) or (time is None) == (apex is None):
             return None
-        found["time_s" if time else "apex_m"] = time or apex
+        if time is not None:
+            found["time_s"] = time
+        elif apex is not None:
+            found["apex_m"] = apex
     if len(given) > 1:
         return None
     if "sigma" not in found and (own := one_of(SIGMAS)):

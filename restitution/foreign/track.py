@@ -187,10 +187,8 @@ def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Set
         needed.append(f"--pixel LENGTH of one (0.125mm), for {columns.value} is in pixels")
     if columns.quantity == "gap" and program is not None:
         if completed.wall is None and program.down:
-            whose = "" if completed.point else " and --point centre or lowest"
-            needed.append(
-                f"--wall X{whose}: {columns.value} of the wall, or --wall rest: where the sphere comes to rest"
-            )
+            wall = "--wall X" if completed.point else "--wall X and --point centre or lowest"
+            needed.append(f"{wall}: {columns.value} of the wall, or --wall rest: where the sphere comes to rest")
         elif completed.point is None and completed.wall != "rest":
             needed.append(f"--point centre or lowest: whose {columns.value} it is")
     if needed:

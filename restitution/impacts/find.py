@@ -30,7 +30,7 @@ class Impacts:
     """Rows of the impact table, the noise that was used, what could not be evaluated and why, what is doubtful.
 
     ``contacts`` are those that were evaluated by ``measure``, in order: impact 1, 2, ...; the track of ``measure``
-    is without its mistracked frames, which are ``lost`` of the track that was given.
+    is without its mistracked frames.
     """
 
     rows: list[dict] = field(repr=False)
@@ -39,7 +39,6 @@ class Impacts:
     doubts: list[Doubt]
     contacts: list[Contact] = field(repr=False)
     measure: SpeedMeasure = field(repr=False)
-    lost: NDArray = field(repr=False)
 
     def table(self) -> pd.DataFrame:
         """The rows as a table with the columns of the impact schema."""
@@ -111,7 +110,7 @@ def find_impacts(
             {"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, edge, stokes)
         )
     doubts = [*clean.doubts, *of_track(track, found, conditions, record)]
-    return Impacts(rows, track.sigma, notes, doubts, touches, measure, clean.lost)
+    return Impacts(rows, track.sigma, notes, doubts, touches, measure)
 
 
 def _remarks(track: Track, found: Contacts) -> list[str]:
