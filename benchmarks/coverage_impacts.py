@@ -41,6 +41,8 @@ TERMINAL = 0.43
 """Speed of the steady fall, m/s."""
 REST = 30e-3
 """How long the sphere is filmed lying at the wall where its rest tells the level, s."""
+_AT_ONCE = 20
+"""Tracks after which what was measured is written."""
 OUT = Path(__file__).with_name("coverage_impacts.json")
 
 
@@ -198,9 +200,9 @@ def main() -> None:
     with Pool(args.processes) as pool:
         for kind in KINDS:
             cell = cells.setdefault(kind.name, Cell(kind.name))
-            if args.only in kind.name and cell.tracks < args.tracks:
-                tasks = [(kind, seed) for seed in range(cell.tracks, args.tracks)]
-                cell.add(pool.map(one, tasks, chunksize=5))
+            while args.only in kind.name and cell.tracks < args.tracks:
+                tasks = [(kind, seed) for seed in range(cell.tracks, min(cell.tracks + _AT_ONCE, args.tracks))]
+                cell.add(pool.map(one, tasks))
                 write_whole(OUT, json.dumps([asdict(c) for c in cells.values() if c.tracks], indent=1) + "\n")
             if cell.tracks:
                 print(cell.line(), flush=True)
