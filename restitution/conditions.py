@@ -120,7 +120,7 @@ def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
     for e in error.errors():
         missing = e["type"] == "missing"
         value = None if missing or isinstance(e["input"], dict) else str(e["input"])
-        rule = _RULES.get(e["type"], e["msg"])
+        rule = _RULES.get(e["type"], e["msg"].removeprefix("Value error, "))
         found.append(Defect(rule, file=file, field=".".join(str(p) for p in e["loc"]), value=value))
     return found
 

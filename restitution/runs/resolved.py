@@ -199,9 +199,9 @@ class ResolvedRun:
         return self.flow.scales.si(curl, "frequency")
 
 
-def kernel_folder() -> Path:
-    """Where the compiled kernels of this version of the solver are kept."""
-    return cache.directory()
+def kernel_folder() -> Path | None:
+    """Where the compiled kernels of this version of the solver are kept; None where they cannot be."""
+    return cache.own_directory()
 
 
 @contextmanager
