@@ -45,7 +45,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="ST[,ST...]",
         help="Stokes numbers instead, by the fit's convention",
     )
-    parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
+    parser.add_argument(
+        "--e-dry", type=options.number, metavar="E", help="dry restitution, where it was not estimated"
+    )
     parser.add_argument(
         "--level",
         action="append",
@@ -59,7 +61,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def values(text: str) -> dict[str, float | str]:
     """``key=number,key=number``, with units or in SI, as an argument type."""
-    return dict(options.amount(part.strip()) for part in text.split(","))
+    given = [options.amount(part.strip()) for part in text.split(",")]
+    if len(dict(given)) < len(given):
+        raise argparse.ArgumentTypeError(f"{text!r} gives a name twice")
+    return dict(given)
 
 
 def conditions_of(args: argparse.Namespace) -> Conditions | None:
@@ -101,7 +106,7 @@ def run(args: argparse.Namespace) -> None:
         low, high = result.stokes_range
         speeds = np.array(args.speed) if args.speed else np.geomspace(low, high, 8) / per_speed
         St = speeds * per_speed
-    prediction = predict(result, St, args.e_dry, conditions, dict(args.level))
+    prediction = predict(result, St, args.e_dry, conditions, options.once("--level", args.level))
     rows = []
     for i, x in enumerate(St):
         ends = [

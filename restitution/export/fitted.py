@@ -8,7 +8,6 @@ impacts have one ratio of Stokes numbers, not of fits to whole trajectories.
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from restitution.calibration.result.prediction import predict, stokes_of
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.export.closure import Closure, Constant
+from restitution.inputs import read_json
 from restitution.laws import REGISTRY
 from restitution.stokes import Speed
 
@@ -43,8 +43,8 @@ def read_unedited(path: str | Path) -> FitResult:
 
 def _check_version(path: str | Path) -> None:
     try:
-        content = json.loads(Path(path).read_bytes())
-    except (OSError, ValueError):
+        content = read_json(path)
+    except InputError:
         return  # read_fit says what is wrong
     given = content.get("format") if isinstance(content, dict) else None
     kind, _, version = FORMAT.partition("/")

@@ -54,6 +54,8 @@ ROW_D = 0.01
 """Way in diameters that the terminal speed makes between two rows."""
 _LONGEST = 30.0
 """A sphere that has not met the wall after so many times its fall at terminal speed does not meet it."""
+_MOST_ROWS = 1e7
+"""Of a table: 240 MB in memory."""
 _FIELDS = {
     "release.gap": "release.gap_d", "end": "run.duration", "rebound": "contact.law",
     "sphere.density / fluid.density": "sphere.density",
@@ -150,6 +152,7 @@ def predict(case: Case, file: str = "", closures: Closures | None = None) -> Pre
             raise InputError(Defect(rule, field="run.duration", value=f"{case.run.duration:g}"))
         fall = release.gap / terminal_speed(conditions) + terminal_speed(conditions) / conditions.free_fall
         path = bounce(conditions, release, closures, ends or _LONGEST * fall)
+        _check_rows(case, path)
         if case.run.after_contact is not None:
             if not path.impacts and ends is None:
                 rule = f"no contact within {_LONGEST * fall:.3g} s, {_LONGEST:g} times the fall: give run.duration"
@@ -163,6 +166,15 @@ def predict(case: Case, file: str = "", closures: Closures | None = None) -> Pre
     if case.contact is None and path.impacts:
         path = _until(path, path.impacts[0].time_s)
     return Prediction(case, path, release, first)
+
+
+def _check_rows(case: Case, path: Trajectory) -> None:
+    """Refuse a table that nobody could keep."""
+    span = (path.impacts[0].time_s if path.impacts else 0.0) + (case.run.after_contact or 0.0)
+    for field, seconds in (("run.after_contact", span), ("run.duration", case.run.duration or 0.0)):
+        if seconds / row_s(case) > _MOST_ROWS:
+            rule = f"gives more than {_MOST_ROWS:.0e} rows {row_s(case):.2g} s apart: fewer seconds"
+            raise InputError(Defect(rule, field=field, value=f"{seconds:g}"))
 
 
 def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:

@@ -16,6 +16,7 @@ from restitution.calibration.estimation.likelihood import OFFSET
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.calibration.estimation.posterior import Posterior
 from restitution.calibration.estimation.rebound_model import LawModel, ReboundModel, model_of
+from restitution.calibration.result.fit_checks import check
 from restitution.calibration.result.residuals import Goodness, Point, goodness_of, number_or_none, points_of
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Record
@@ -162,8 +163,10 @@ class FitResult(Showing, Record):
 
 
 def read_fit(path: str | Path) -> FitResult:
-    """The fit in a JSON file; raises :class:`InputError` naming what is wrong with it."""
-    return read_record(path, FitResult)
+    """The fit in a JSON file; raises :class:`InputError` naming all that is wrong with it."""
+    result = read_record(path, FitResult)
+    check(result, path)
+    return result
 
 
 MOST_DRAWS = 1000
