@@ -73,7 +73,7 @@ def _shots(text: str) -> tuple[int, ...]:
 def run(args: argparse.Namespace) -> None:
     """Print the ranked experiments, and draw them where asked."""
     from restitution.calibration.result import design
-    from restitution.calibration.result.fit_result import read_fit
+    from restitution.calibration.result.fit_file import read_fit
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 

@@ -89,7 +89,7 @@ def run(args: argparse.Namespace) -> None:
     """Print e_eff and its intervals, one line a speed."""
     import numpy as np
 
-    from restitution.calibration.result.fit_result import read_fit
+    from restitution.calibration.result.fit_file import read_fit
     from restitution.calibration.result.prediction import predict, stokes_of
     from restitution.errors import InputError
 

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.result.fit_result import FORMAT, FitResult, parameter_values, read_fit
+from restitution.calibration.result.fit_file import read_fit
+from restitution.calibration.result.fit_result import FORMAT, FitResult, parameter_values
 from restitution.calibration.result.prediction import predict, stokes_of
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError

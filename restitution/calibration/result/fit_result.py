@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from importlib import metadata
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -16,11 +15,9 @@ from restitution.calibration.estimation.likelihood import OFFSET
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.calibration.estimation.posterior import Posterior
 from restitution.calibration.estimation.rebound_model import LawModel, ReboundModel, model_of
-from restitution.calibration.result.fit_checks import check
 from restitution.calibration.result.residuals import Goodness, Point, goodness_of, number_or_none, points_of
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Record
-from restitution.tables.schema import read_record
 
 FORMAT = "restitution-fit/1"
 _LIBRARIES = ("restitution", "numpy", "scipy", "iminuit", "emcee")
@@ -160,13 +157,6 @@ class FitResult(Showing, Record):
     def to_json(self) -> str:
         """JSON text of standard numbers only: no NaN, no infinity."""
         return json.dumps(self.model_dump(mode="json"), indent=1, allow_nan=False) + "\n"
-
-
-def read_fit(path: str | Path) -> FitResult:
-    """The fit in a JSON file; raises :class:`InputError` naming all that is wrong with it."""
-    result = read_record(path, FitResult)
-    check(result, path)
-    return result
 
 
 MOST_DRAWS = 1000

@@ -1,20 +1,18 @@
-"""Whether the parts of a fit's record belong together: bounds and values, the covariance, names, ranges, draws."""
+"""A fit in a file: used where its parts belong together, bounds and values, covariance, names, ranges, draws."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER
 from restitution.calibration.estimation.maximum import LEVELS
+from restitution.calibration.result.fit_result import FitResult
 from restitution.errors import Defect, InputError
 from restitution.stokes import CONVENTIONS, Speed
-
-if TYPE_CHECKING:
-    from restitution.calibration.result.fit_result import FitResult
+from restitution.tables.schema import read_record
 
 _ROUND_OFF = 1e-6
 """How far below zero an eigenvalue of a correlation matrix may lie that was written with all its digits."""
@@ -23,8 +21,9 @@ _LEVELS = {f"{level:.0%}" for level in LEVELS}
 Finding = tuple[str, object, str]
 
 
-def check(result: FitResult, path: str | Path) -> None:
-    """Raise :class:`InputError` naming all that is wrong with the record in the file ``path``."""
+def read_fit(path: str | Path) -> FitResult:
+    """The fit in a JSON file; raises :class:`InputError` naming all that is wrong with it."""
+    result = read_record(path, FitResult)
     found = [finding for rule in (_law, _parameters, _ranges, _points) for finding in rule(result)]
     found = found or [*_names(result), *_covariance(result), *_chain(result)]
     if found:
@@ -34,6 +33,7 @@ def check(result: FitResult, path: str | Path) -> None:
                 for field, value, rule in found
             )
         )
+    return result
 
 
 def _law(result: FitResult) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from restitution.calibration.result.fit_result import read_fit
+from restitution.calibration.result.fit_file import read_fit
 from restitution.calibration.result.prediction import predict
 from restitution.cli import main
 from restitution.errors import InputError
