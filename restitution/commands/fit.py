@@ -73,13 +73,13 @@ def run(args: argparse.Namespace) -> None:
 
         chain = chain_of(sample(fit.likelihood, fit.maximum, args.seed, progress=sys.stderr.isatty()))
     result = result_of(fit, chain)
-    if args.out:
-        write_whole(args.out, result.to_json())
     written = []
     if args.report:
         from restitution.report.fits import report
 
-        written = report.write(args.report, result)
+        written = report.write(args.report, result, out=args.out)
+    elif args.out:
+        write_whole(args.out, result.to_json())
     show_facts(describe(result))
     for name in written:
         show(str(Path(args.report) / name))

@@ -41,7 +41,7 @@ from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.measured import measured_restitution
-from restitution.runs.record import POINT_PARTICLE, RunRecord, SolverContact
+from restitution.runs.record import FILE, POINT_PARTICLE, RunRecord, SolverContact, digest
 from restitution.runs.validity.program import program_hash
 from restitution.stokes import StokesNumber
 from restitution.tables.writing import table_text
@@ -49,7 +49,6 @@ from restitution.tables.writing import table_text
 if TYPE_CHECKING:
     import pandas as pd
 
-FILES = ("trajectory.csv", "velocity.csv", "impacts.csv", "run.json")
 ROW_D = 0.01
 """Way in diameters that the terminal speed makes between two rows."""
 _LONGEST = 30.0
@@ -183,6 +182,11 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
     table = prediction.table()
     trajectory, velocity = table[["time_s", "gap_m"]], table[["time_s", "velocity_m_s"]]
     impacts, notes = simulated_impacts(trajectory, case)
+    contents = {
+        "trajectory.csv": table_text(trajectory),
+        "velocity.csv": table_text(velocity),
+        "impacts.csv": table_text(impacts),
+    }
     record = RunRecord(
         model=POINT_PARTICLE,
         case=case.name,
@@ -201,9 +205,9 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
         code_hash=program_hash(),
         filmed=filmed(case),
         case_as_run=case.model_dump(mode="json", exclude_none=True),
+        files={name: digest(content) for name, content in contents.items()},
     )
-    contents = (table_text(trajectory), table_text(velocity), table_text(impacts), record.text())
-    write_folder(folder, dict(zip(FILES, contents, strict=True)))
+    write_folder(folder, {**contents, FILE: record.text()})
 
 
 def _numbers(prediction: Prediction) -> dict[str, float]:

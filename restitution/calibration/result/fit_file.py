@@ -10,12 +10,16 @@ import numpy as np
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.calibration.result.fit_result import FitResult
+from restitution.conditions import LARGEST
 from restitution.errors import Defect, InputError
 from restitution.stokes import CONVENTIONS, Speed
 from restitution.tables.schema import read_record
 
 _ROUND_OFF = 1e-6
 """How far below zero an eigenvalue of a correlation matrix may lie that was written with all its digits."""
+_LEAST_FREEDOM = 0.1
+"""Below, an interval of Student's t has no end that can be written."""
+_LARGEST_VARIANCE = LARGEST**2
 _LEVELS = {f"{level:.0%}" for level in LEVELS}
 
 Finding = tuple[str, object, str]
@@ -54,14 +58,14 @@ def _parameters(result: FitResult) -> Iterator[Finding]:
         if p.name in seen:
             yield f"{where}.name", p.name, "is there twice"
         seen.add(p.name)
-        if not low < high:
-            yield f"{where}.bounds", f"{low:g} to {high:g}", "must rise"
+        if not (low < high and abs(low) <= LARGEST and abs(high) <= LARGEST):
+            yield f"{where}.bounds", f"{low:g} to {high:g}", f"must rise, within {LARGEST:g}"
         elif not low <= p.value <= high:
             yield f"{where}.value", f"{p.value:g}", f"lies outside its bounds [{low:g}, {high:g}]"
-        if p.sigma is not None and p.sigma < 0:
-            yield f"{where}.sigma", f"{p.sigma:g}", "must not be negative"
-        if p.degrees_of_freedom is not None and not p.degrees_of_freedom > 0:
-            yield f"{where}.degrees_of_freedom", f"{p.degrees_of_freedom:g}", "must be positive"
+        if p.sigma is not None and (p.sigma < 0 or (not p.mean and p.sigma < _ROUND_OFF * p.value)):
+            yield f"{where}.sigma", f"{p.sigma:g}", "is too small for the error of anything that is estimated"
+        if p.degrees_of_freedom is not None and p.degrees_of_freedom < _LEAST_FREEDOM:
+            yield f"{where}.degrees_of_freedom", f"{p.degrees_of_freedom:g}", f"must be at least {_LEAST_FREEDOM}"
         for name, ends in (("intervals", p.intervals), ("open_ends", p.open_ends)):
             if set(ends) != _LEVELS:
                 yield f"{where}.{name}", ", ".join(ends), f"must be those of {', '.join(sorted(_LEVELS))}"
@@ -127,6 +131,8 @@ def _covariance(result: FitResult) -> Iterator[Finding]:
         yield "covariance", None, "has empty places between parameters that have a variance"
     elif (np.diag(C) < 0).any():
         yield "covariance", f"{np.diag(C).min():g}", "has a negative variance"
+    elif len(C) and np.abs(C).max() > _LARGEST_VARIANCE:
+        yield "covariance", f"{np.abs(C).max():g}", "is larger than of anything that is fitted"
     else:
         scale = np.sqrt(np.diag(C))
         scale[scale == 0] = 1.0

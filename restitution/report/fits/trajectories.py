@@ -25,14 +25,15 @@ _POINTS = 1200
 """Of a line over a record."""
 
 
-def write(folder: str | Path, fit: TrajectoryFit, result: FitResult) -> list[str]:
-    """Write the report into ``folder``; returns the names of the files."""
+def write(folder: str | Path, fit: TrajectoryFit, result: FitResult, out: str | None = None) -> list[str]:
+    """Write the report into ``folder``, the record to ``out`` as well; returns the names of the files."""
     drawing = draw(fit)
     return report.write(
         folder,
         result,
         "trajectory_fit.html.j2",
         {"trajectories.svg": drawing.svg, "trajectories.png": drawing.png},
+        out,
         trajectories=drawing.svg,
         slopes=_slopes(fit),
         seen=[f"{t.record}: rms {t.rms_d:.3f} d with its own restitutions" for t in result.trajectories],
