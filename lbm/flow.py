@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from operator import attrgetter
@@ -26,6 +26,7 @@ from lbm.rates_by_place import RatesByPlace
 
 __all__ = ["Flow", "Force"]
 
+_BESIDE = "beside/"
 Force = Sequence[float] | Callable[[float], Sequence[float]]
 
 
@@ -173,8 +174,16 @@ class Flow:
             "bodies": [bodies.description(body) for body in self.bodies],
         }
 
-    def save(self, path: Path | str) -> None:
+    def save(self, path: Path | str, owner: str = "", beside: Mapping[str, np.ndarray] | None = None) -> None:
         """Write a checkpoint.
+
+        Parameters
+        ----------
+        path : path
+        owner : str
+            Whose it is; :meth:`restore` refuses it to another.
+        beside : mapping
+            Further arrays by name, which the caller wants to find again.
 
         Raises
         ------
@@ -183,12 +192,18 @@ class Flow:
         """
         self._refuse_half_done()
         arrays = {"slots": self.lattice.slots(), **self._body_states()}
-        checkpoint.save(path, self.describe(), {"steps": self.steps, "parity": self.lattice.parity}, arrays)
+        arrays |= {f"{_BESIDE}{name}": np.asarray(array) for name, array in (beside or {}).items()}
+        numbers = {"steps": self.steps, "parity": self.lattice.parity}
+        checkpoint.save(path, {"owner": owner, **self.describe()}, numbers, arrays)
 
-    def restore(self, path: Path | str) -> None:
+    def restore(self, path: Path | str, owner: str = "") -> dict[str, np.ndarray]:
         """Continue from a checkpoint of a flow set up like this one, bit for bit.
 
         Functions of time (force, faces) are not compared: they must be the same ones.
+
+        Returns
+        -------
+        The arrays that were saved ``beside`` the flow.
 
         Raises
         ------
@@ -197,8 +212,12 @@ class Flow:
         """
         self._refuse_within_run("restore")
         with interrupts_deferred():
-            names = ("slots", *self._body_states())
-            numbers, arrays = checkpoint.read(path, self.describe(), ("steps", "parity"), names)
+            own = {"slots": self.lattice.slots()}
+            description = {"owner": owner, **self.describe()}
+            numbers, arrays = checkpoint.read(path, description, ("steps", "parity"), own, ("body/", _BESIDE))
+            beside = {n.removeprefix(_BESIDE): arrays.pop(n) for n in [*arrays] if n.startswith(_BESIDE)}
+            if {"slots", *self._body_states()} != arrays.keys():
+                raise InputError(f"{path}: damaged checkpoint: not all of the flow is in it; use an earlier one")
             slots = arrays.pop("slots")
             self._check(path, slots, numbers)
             with self._changing():
@@ -206,14 +225,23 @@ class Flow:
                 self.lattice.parity, self._steps = numbers["parity"], numbers["steps"]
                 for index, body in enumerate(self.bodies):
                     prefix = _place(index, "")
-                    body.set_state({n.removeprefix(prefix): a for n, a in arrays.items() if n.startswith(prefix)})
+                    self._restore_body(
+                        path, body, {n.removeprefix(prefix): a for n, a in arrays.items() if n.startswith(prefix)}
+                    )
                 self._saw_start = []
+            return beside
+
+    def _restore_body(self, path: Path | str, body: Body, state: dict[str, np.ndarray]) -> None:
+        try:
+            body.set_state(state)
+        except (ValueError, TypeError, KeyError, IndexError) as error:
+            raise InputError(
+                f"{path}: damaged checkpoint: the state of a body ({error}); use an earlier one"
+            ) from None
 
     def _check(self, path: Path | str, slots: np.ndarray, numbers: dict[str, int]) -> None:
-        own, steps = self.lattice.slots(), numbers["steps"]
-        fits = slots.shape == own.shape and slots.dtype == own.dtype
-        if not fits or steps < 0 or numbers["parity"] not in (0, 1):
-            raise InputError(f"{path}: damaged checkpoint ({slots.shape}, step {steps}); use an earlier one")
+        if numbers["steps"] < 0 or numbers["parity"] not in (0, 1):
+            raise InputError(f"{path}: damaged checkpoint (step {numbers['steps']}); use an earlier one")
         if not np.isfinite(slots).all():
             raise InputError(f"{path}: holds values that are not finite; use an earlier one")
 

@@ -22,7 +22,7 @@ from restitution.commands import (
     report,
     simulate,
 )
-from restitution.errors import InputError, OutOfRangeWarning, by_cause
+from restitution.errors import InputError, OutOfRangeWarning, first_of, printable
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -54,7 +54,7 @@ def _run(args: argparse.Namespace) -> int:
             sys.stdout.flush()
         return status
     except InputError as error:
-        for defect in by_cause(error.defects):
+        for defect in first_of(error.defects):
             print(f"error: {defect}", file=sys.stderr)  # noqa: T201
         return 2
     except BrokenPipeError:
@@ -71,4 +71,4 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _show_warning(message: Warning | str, *_: object) -> None:
-    print(f"warning: {message}", file=sys.stderr)  # noqa: T201
+    print(f"warning: {printable(str(message))}", file=sys.stderr)  # noqa: T201

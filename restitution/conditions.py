@@ -6,18 +6,19 @@ One record serves measured data (``data/datapackage.json``), users' TOML files a
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from restitution.errors import Defect, InputError
+from restitution.inputs import read_toml
 from restitution.units import KINEMATIC, UnitError, in_si, measured, quantity
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
-
+SMALLEST, LARGEST = 1e-12, 1e12
+"""Of any size of a case, in SI or in diameters: products and powers of what lies between never overflow."""
+Positive = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=False, strict=True)]
+NonNegative = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False, strict=True)]
 
 Length = Annotated[Positive, measured("m")]
 Thickness = Annotated[NonNegative, measured("m")]
@@ -119,25 +120,17 @@ def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
     found = []
     for e in error.errors():
         missing = e["type"] == "missing"
-        value = None if missing or isinstance(e["input"], dict) else str(e["input"])
-        rule = _RULES.get(e["type"], e["msg"])
+        value = None if missing or isinstance(e["input"], dict | list) else _text(e["input"])
+        rule = _RULES.get(e["type"], e["msg"].removeprefix("Value error, "))
         found.append(Defect(rule, file=file, field=".".join(str(p) for p in e["loc"]), value=value))
     return found
 
 
-def read_toml(path: str | Path) -> dict[str, Any]:
-    """The content of a TOML file; raises :class:`InputError` where it cannot be read as such."""
-    path = Path(path)
+def _text(value: Any) -> str:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
-    except UnicodeDecodeError as error:
-        raise InputError(
-            Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", file=str(path))
-        ) from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(Defect(f"is not TOML: {error}", file=str(path))) from None
+        return str(value)
+    except ValueError:  # an integer of more digits than Python writes
+        return f"an integer of {value.bit_length()} bits"
 
 
 def read_conditions(path: str | Path) -> Conditions:

@@ -10,6 +10,25 @@ import re
 from collections.abc import Iterable
 from dataclasses import KW_ONLY, dataclass, replace
 
+MOST_LINES = 20
+"""Defects that are printed; of more, how many there are."""
+LONGEST_VALUE, LONGEST_PLACE, LONGEST_RULE = 80, 300, 600
+"""Characters of what is printed of one defect."""
+
+
+def printable(text: str, most: int | None = None, keep: str = "") -> str:
+    r"""A text of a user's as it can be printed on one line: no control characters but those to ``keep``.
+
+    They are shown as Python writes them, ``\x1b``; a text longer than ``most`` characters is cut, which is said.
+    """
+    if most is not None and len(text) > most:
+        text = f"{text[: most - 20]}... ({len(text)} characters)"
+    if text.isprintable():
+        return text
+    return "".join(
+        c if c.isprintable() or c in keep else c.encode("unicode_escape", "surrogatepass").decode() for c in text
+    )
+
 
 @dataclass(frozen=True)
 class Defect:
@@ -23,13 +42,13 @@ class Defect:
     value: str | None = None
 
     def __str__(self) -> str:
-        place = ":".join(str(p) for p in (self.file, self.row) if p is not None)
+        place = printable(":".join(str(p) for p in (self.file, self.row) if p is not None), LONGEST_PLACE)
         what = [
-            f"{self.field}" if self.field is not None else "",
-            f"= {self.value!r}" if self.value is not None else "",
+            printable(self.field, LONGEST_VALUE) if self.field is not None else "",
+            f"= '{printable(self.value, LONGEST_VALUE)}'" if self.value is not None else "",
         ]
         subject = " ".join(w for w in what if w)
-        return ": ".join(part for part in (place, subject, self.rule) if part)
+        return ": ".join(part for part in (place, subject, printable(self.rule, LONGEST_RULE)) if part)
 
 
 def by_cause(defects: Iterable[Defect]) -> list[Defect]:
@@ -47,12 +66,23 @@ def by_cause(defects: Iterable[Defect]) -> list[Defect]:
     ]
 
 
+def first_of(defects: Iterable[Defect]) -> list[Defect]:
+    """What is to be printed: one defect a cause, of many causes the first, and how many more there are."""
+    causes = by_cause(defects)
+    if len(causes) <= MOST_LINES:
+        return causes
+    return [*causes[: MOST_LINES - 1], Defect(f"and {len(causes) - MOST_LINES + 1} more")]
+
+
 class InputError(ValueError):
     """The input cannot be used. ``defects`` lists everything found wrong, in the order of the file."""
 
     def __init__(self, *defects: Defect | str):
         self.defects = tuple(d if isinstance(d, Defect) else Defect(d) for d in defects)
-        super().__init__("\n".join(str(d) for d in self.defects))
+        super().__init__(*self.defects)
+
+    def __str__(self) -> str:
+        return "\n".join(str(d) for d in self.defects)
 
 
 class ConventionError(InputError):

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import os
+import secrets
 from collections.abc import Mapping
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
+from restitution.locks import hold
+
+_PART = ".part"
 
 
 def check_place(path: str | Path) -> None:
@@ -45,15 +50,24 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
     _write({str(path): (target, content)})
 
 
-def write_folder(folder: str | Path, contents: Mapping[str, str | bytes]) -> None:
-    """Write several files into ``folder``, made if need be: all are written aside first, then renamed in turn."""
+def write_folder(
+    folder: str | Path, contents: Mapping[str, str | bytes], also: Mapping[str, str | bytes] | None = None
+) -> None:
+    """Write several files into ``folder``, made if need be: all are written aside first, then renamed in turn.
+
+    ``also`` are further files, by whole path, that belong to the same set.
+    """
     folder, made = Path(folder), []
     if folder.exists() and not folder.is_dir():
         raise InputError(Defect("is not a folder", file=str(folder)))
+    for path in also or ():
+        check_place(path)
     try:
         made = [place for place in (folder, *folder.parents) if not place.exists()]
         folder.mkdir(parents=True, exist_ok=True)
-        _write({str(folder / name): (folder / name, content) for name, content in contents.items()})
+        targets = {str(folder / name): (folder / name, content) for name, content in contents.items()}
+        targets |= {path: (Path(path).resolve(), content) for path, content in (also or {}).items()}
+        _write(targets)
     except (OSError, InputError) as error:
         for place in made:
             if place.is_dir() and not any(place.iterdir()):
@@ -64,17 +78,25 @@ def write_folder(folder: str | Path, contents: Mapping[str, str | bytes]) -> Non
 
 
 def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
-    """Write to targets, which the caller knows by the names that are the keys."""
+    """Write to targets, which the caller knows by the names that are the keys.
+
+    A file written aside is held until it has its name, so that those which killed processes left are known.
+    """
     aside: list[tuple[str, Path, Path]] = []
-    try:
+    with ExitStack() as streams:
+        streams.callback(lambda: [temporary.unlink(missing_ok=True) for _, temporary, _ in aside])
         for name, (target, content) in contents.items():
             if target.is_dir():
                 raise InputError(Defect("cannot be written: it is a folder", file=name))
-            temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+            temporary = target.with_name(f".{target.name}.{secrets.token_hex(8)}{_PART}")
             try:
-                with temporary.open("xb") as stream:
-                    aside.append((name, temporary, target))
-                    stream.write(content.encode() if isinstance(content, str) else content)
+                _remove_stale(target)
+                stream = streams.enter_context(temporary.open("xb", buffering=0))
+                aside.append((name, temporary, target))
+                hold(stream.fileno())
+                rest = memoryview(content.encode() if isinstance(content, str) else content)
+                while rest:
+                    rest = rest[stream.write(rest) :]
             except OSError as error:
                 raise _defect(error, name) from None
         for name, temporary, target in aside:
@@ -82,9 +104,15 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
                 temporary.replace(target)
             except OSError as error:
                 raise _defect(error, name) from None
-    finally:
-        for _, temporary, _ in aside:
-            temporary.unlink(missing_ok=True)
+
+
+def _remove_stale(target: Path) -> None:
+    """Remove what killed processes left of earlier files of that name: what nobody holds."""
+    beginning = f".{target.name}."
+    for part in [p for p in target.parent.iterdir() if p.name.startswith(beginning) and p.name.endswith(_PART)]:
+        with suppress(OSError), part.open("rb") as stream:
+            if hold(stream.fileno()):
+                part.unlink()
 
 
 def _defect(error: OSError, name: str | Path) -> InputError:

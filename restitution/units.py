@@ -75,13 +75,26 @@ _WORDS = {
     **dict.fromkeys(("microns", "micrometer", "micrometre"), Quantity(1e-6, LENGTH)),
 }
 
+# Python's float() would also take 1_000 and digits of other scripts.
+NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+
 _LONGEST = 60
 """Characters of a text; brackets within it are read by recursion."""
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]+)|(?P<sign>\*\*|[-+*/·⋅×^().]))"
+    r"\s*(?:(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[^\W\d]+)|(?P<sign>\*\*|[-+*/·⋅×^().]))",
 )
 _POWER = re.compile(r"\s*(?:\*\*|\^)?\s*([-+]?\d+)(?![\d.]*[eE.]\d)")
+
+
+def number(text: str) -> float:
+    """A finite number, of plain digits; raises :class:`UnitError` where the text is none."""
+    if not NUMBER.fullmatch(text.strip()):
+        raise UnitError("is not a number")
+    value = float(text)
+    if not math.isfinite(value):
+        raise UnitError("is not finite")
+    return value
 
 
 def quantity(text: str, symbols: Mapping[str, Quantity] | None = None) -> Quantity:

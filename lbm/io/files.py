@@ -5,11 +5,17 @@ from __future__ import annotations
 import errno
 import io
 import os
+import secrets
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import h5py
+
+try:
+    import fcntl
+except ImportError:  # where files cannot be held, nothing is known to be stale
+    fcntl = None  # type: ignore[assignment]
 
 from lbm import arguments
 from lbm.errors import OutputError
@@ -41,6 +47,26 @@ class _Sink(io.FileIO):
         return size or 0
 
 
+def _hold(number: int) -> bool:
+    """Lock an open file as long as it is open; False where another process has it, or none can be locked here."""
+    if fcntl is None:
+        return False
+    try:
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def _remove_stale(path: Path) -> None:
+    """Remove what killed processes left of earlier files of that name: what nobody holds."""
+    for part in path.parent.iterdir():
+        if part.name.startswith(f".{path.name}.") and part.name.endswith(".part"):
+            with suppress(OSError), part.open("rb") as stream:
+                if _hold(stream.fileno()):
+                    part.unlink()
+
+
 @contextmanager
 def write_aside(path: Path | str) -> Iterator[h5py.File]:
     """An HDF5 file open for writing, which takes the name ``path`` only when complete and on the disk.
@@ -52,18 +78,20 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
     if not path.name or "\0" in str(path):
         raise OutputError(f"{str(path)!r} names no file")
     path = path.resolve()  # through links, which stay what they are
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    aside = path.with_name(f".{path.name}.{secrets.token_hex(8)}.part")
     try:
         if path.exists() and not path.is_file():
             raise FileExistsError(errno.EEXIST, "is not a regular file")
         path.parent.mkdir(parents=True, exist_ok=True)
-        with _Sink(aside, "w+") as sink:
+        _remove_stale(path)
+        with _Sink(aside, "x+") as sink:
+            _hold(sink.fileno())
             with h5py.File(sink, "w") as file:
                 yield file
             if sink.failure is not None:
                 raise sink.failure
             os.fsync(sink.fileno())
-        aside.replace(path)
+            aside.replace(path)
     except OSError as error:
         raise OutputError(
             f"{path}: not written ({error}); a file of that name that was there is intact"

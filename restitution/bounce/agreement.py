@@ -93,6 +93,9 @@ def release_reaching(
 
     if excess(3 * speed) < 0:
         raise InputError(f"no release {gap:g} m above the wall meets it with {speed:g} m/s: is the unit right?")
+    if excess(0.1 * speed) > 0:
+        rule = f"what falls {gap:g} m in this fluid meets the wall faster than the {speed:g} m/s of its rebounds"
+        raise InputError(f"{rule}: the track is of another fluid, or begins amid a flight")
     return Release(gap, float(brentq(excess, 0.1 * speed, 3 * speed, xtol=1e-9)))
 
 

@@ -28,7 +28,8 @@ from restitution.calibration.estimation.rebound_model import model_of
 from restitution.calibration.reading.impact_data import read
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.reading.reading import Reading
-from restitution.calibration.result.fit_result import FitResult, read_fit, result_of
+from restitution.calibration.result.fit_file import read_fit
+from restitution.calibration.result.fit_result import FitResult, result_of
 from restitution.calibration.result.prediction import Prediction, predict
 from restitution.calibration.result.ranking import Ranking, rank
 

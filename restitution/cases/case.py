@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from restitution.conditions import (
     Acceleration,
@@ -29,6 +29,21 @@ from restitution.conditions import (
 from restitution.stokes import WIDEST_FILM
 from restitution.units import measured
 
+_LONGEST_NAME = 100
+
+
+def _plain(name: str) -> str:
+    """Results go to a folder of this name: it must not lead elsewhere, nor be none."""
+    plain = name.isprintable() and name[:1] not in ("", ".", "-") and not set(name) & set("/\\")
+    if not plain or len(name.encode()) > _LONGEST_NAME:
+        raise ValueError(
+            f"must be a plain name, of at most {_LONGEST_NAME} bytes, without slashes or control "
+            "characters, and begin with neither point nor dash: results go to a folder of that name"
+        )
+    return name
+
+
+Name = Annotated[str, AfterValidator(_plain)]
 Restitution = Annotated[float, Field(ge=0, le=1, strict=True)]
 EdgeOfFilm = Annotated[float, Field(gt=0, le=WIDEST_FILM, strict=True)]
 
@@ -161,7 +176,7 @@ class Case(Record):
     ``title``, ``note`` and ``study`` are for readers; ``prediction`` says that no measured track exists.
     """
 
-    name: str
+    name: Name
     title: str = ""
     note: str = ""
     record: str | None = None

@@ -17,8 +17,9 @@ from pydantic import ValidationError
 from restitution import datasets
 from restitution.cases.case import Case
 from restitution.cases.rules import defects
-from restitution.conditions import defects_of, read_toml
+from restitution.conditions import defects_of
 from restitution.errors import Defect, InputError
+from restitution.inputs import read_toml
 
 FOLDER = Path(__file__).parent / "shipped"
 TEMPLATE = Path(__file__).parent / "template.toml"

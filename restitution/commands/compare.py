@@ -51,8 +51,9 @@ def run(args: argparse.Namespace) -> None:
     observations = read(args.data, fit_options.reading_of(args))
     plans = []
     wanted = args.law or laws.names("rebound")
+    stokes = fit_options.convention_of_formula(args.law_stokes, wanted, observations.convention)
     for law in wanted:
-        plan = fit_options.plan_of(args, law, args.law_stokes or observations.convention, strict=len(wanted) == 1)
+        plan = fit_options.plan_of(args, law, stokes, strict=len(wanted) == 1)
         if args.as_published:
             plan = replace(plan, fixed={p.name: p.start for p in plan.model.parameters} | dict(plan.fixed))
         plans.append((law, plan))

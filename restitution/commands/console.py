@@ -7,6 +7,8 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from restitution.errors import printable
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
@@ -15,6 +17,8 @@ def show(what: RenderableType) -> None:
     """Print a text or a rich table."""
     from rich.console import Console
 
+    if isinstance(what, str):
+        what = printable(what, keep="\n")
     console = Console(highlight=False, markup=False, soft_wrap=isinstance(what, str))
     if not console.is_terminal:
         console.width = 10_000
@@ -31,9 +35,9 @@ def show_rows(headings: Sequence[str], rows: Iterable[Sequence[str]], right: Ite
 
     table = Table(box=None, padding=(0, 1, 0, 0), header_style="bold")
     for heading in headings:
-        table.add_column(heading, justify="right" if heading in set(right) else "left", overflow="fold")
+        table.add_column(printable(heading), justify="right" if heading in set(right) else "left", overflow="fold")
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*map(printable, row))
     show(table)
 
 
@@ -44,7 +48,7 @@ def show_facts(facts: Iterable[tuple[str, str]]) -> None:
     table = Table.grid("key", "value", padding=(0, 2))
     table.columns[0].style, table.columns[0].no_wrap = "bold", True
     for key, value in facts:
-        table.add_row(key, value)
+        table.add_row(printable(key), printable(value, keep="\n"))
     show(table)
 
 

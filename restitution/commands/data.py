@@ -12,8 +12,6 @@ from restitution.commands.console import cell, show, show_facts, show_rows
 if TYPE_CHECKING:
     from restitution.datasets.package import Resource
 
-MOST_DEFECTS = 50
-
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     """Declare ``data list``, ``data show NAME`` and ``data validate [PATH]``."""
@@ -141,6 +139,9 @@ def run_validate(args: argparse.Namespace) -> None:
             show(f"{place / r.path}: valid {r.table} table")
         return
 
+    if args.schema is None and not columns and (impacts := _impacts_of_a_fit(path)) is not None:
+        show(f"{path}: valid table for a fit, {impacts}")
+        return
     schema = datasets.schema(args.schema) if args.schema else infer_schema(path, columns)
     if args.unit == "mm" and "gap_m" not in schema.columns:
         raise InputError(Defect(f"--unit mm: a {schema.name} table has no gap_m", file=str(path)))
@@ -148,12 +149,22 @@ def run_validate(args: argparse.Namespace) -> None:
     show(f"{path}: valid {schema.name} table")
 
 
-def _raise(defects: list) -> None:
-    """Raise what was found, by cause, the first so many; nothing where nothing was found."""
-    from restitution.errors import Defect, InputError, by_cause
+def _impacts_of_a_fit(path: Path) -> str | None:
+    """What a table has that is of no kind of the package's data but one that ``fit`` takes; None for others."""
+    from restitution.calibration.reading.impact_data import read
+    from restitution.calibration.showing import counted
+    from restitution.datasets.checks import fitting_schemas
+    from restitution.tables.reading import read_header
 
-    defects = by_cause(defects)
-    if len(defects) > MOST_DEFECTS:
-        defects = [*defects[:MOST_DEFECTS], Defect(f"and {len(defects) - MOST_DEFECTS} more")]
+    header = set(read_header(path))
+    if fitting_schemas(list(header), {}) or not {"stokes", "e_eff"} <= header:
+        return None
+    return counted(len(read(path)), "impact")
+
+
+def _raise(defects: list) -> None:
+    """Raise what was found; nothing where nothing was found."""
+    from restitution.errors import InputError
+
     if defects:
         raise InputError(*defects)

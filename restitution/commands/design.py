@@ -24,7 +24,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("fit", metavar="FIT", help="the JSON of a fit")
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument("--parameter", metavar="NAME", help="narrow this parameter (default: the first of the law)")
-    goal.add_argument("--at", type=float, metavar="ST", help="narrow e_eff at this Stokes number instead")
+    goal.add_argument("--at", type=options.number, metavar="ST", help="narrow e_eff at this Stokes number instead")
     parser.add_argument(
         "--shots", type=_shots, default=(1, 5, 20), metavar="M[,M...]", help="impacts each (1,5,20)"
     )
@@ -47,12 +47,18 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="COLUMN=NAME",
         help="of separate parameters (default: that of --parameter)",
     )
-    parser.add_argument("--e-sigma", type=float, metavar="S", help="error of a new e_eff (default: as in the fit)")
-    parser.add_argument("--st-sigma", type=float, metavar="S", help="relative error of a new St (as in the fit)")
-    parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
+    parser.add_argument(
+        "--e-sigma", type=options.number, metavar="S", help="error of a new e_eff (default: as in the fit)"
+    )
+    parser.add_argument(
+        "--st-sigma", type=options.number, metavar="S", help="relative error of a new St (as in the fit)"
+    )
+    parser.add_argument(
+        "--e-dry", type=options.number, metavar="E", help="dry restitution, where it was not estimated"
+    )
     parser.add_argument("--same-source", action="store_true", help="no new offset: the same laboratory and set-up")
     parser.add_argument("--beyond", action="store_true", help="also St outside the calibrated range")
-    parser.add_argument("--rows", type=int, default=12, metavar="N", help="rows to print (12)")
+    parser.add_argument("--rows", type=options.whole, default=12, metavar="N", help="rows to print (12)")
     parser.add_argument("--plot", metavar="FILE", help="also draw the gain against St, as SVG or PNG")
     parser.set_defaults(run=run)
 
@@ -67,7 +73,7 @@ def _shots(text: str) -> tuple[int, ...]:
 def run(args: argparse.Namespace) -> None:
     """Print the ranked experiments, and draw them where asked."""
     from restitution.calibration.result import design
-    from restitution.calibration.result.fit_result import read_fit
+    from restitution.calibration.result.fit_file import read_fit
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 
@@ -86,7 +92,7 @@ def run(args: argparse.Namespace) -> None:
     experiments = design.candidates(args.pairs or design.PAIRS, tuple(args.height))
     first = next((p.name for p in result.parameters if p.mean), None)
     target = design.Target(None if args.at is not None else args.parameter or first, args.at)
-    levels = design.levels_of(result, target, dict(args.level))
+    levels = design.levels_of(result, target, options.once("--level", args.level))
     e_dry = args.e_dry if args.e_dry is not None else _typical_e_dry(result, levels)
     plan = design.Design(
         result, target, e_dry, experiments[0].conditions, args.e_sigma, args.st_sigma, args.same_source, levels

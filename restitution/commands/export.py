@@ -40,7 +40,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--fluid", type=values, metavar="density=D,viscosity=MU", help="in kg/m3 and Pa s")
     parser.add_argument("--sphere", type=values, metavar="diameter=D,density=RHO,e_dry=E", help="in m and kg/m3")
     parser.add_argument("--conditions", metavar="FILE", help="fluid and sphere, or partner, in TOML instead")
-    parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where no fit or sphere has it")
+    parser.add_argument(
+        "--e-dry", type=options.number, metavar="E", help="dry restitution, where no fit or sphere has it"
+    )
     parser.add_argument(
         "--of", action="append", default=[], type=options.pair, metavar="COLUMN=NAME",
         help="which of a fit's separate parameters",
@@ -50,14 +52,17 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="0 (default): constant e; 1: the code's own law, refitted; 2: e(St) of the speed at first contact",
     )  # fmt: skip
     parser.add_argument(
-        "--speed", type=float, metavar="V", help="impact speed in m/s: that e of level 0 or a film law is taken at"
+        "--speed",
+        type=options.number,
+        metavar="V",
+        help="impact speed in m/s: that e of level 0 or a film law is taken at",
     )
-    parser.add_argument("--cells", type=float, metavar="N", help="walberla, lethe: cells a diameter")
+    parser.add_argument("--cells", type=options.number, metavar="N", help="walberla, lethe: cells a diameter")
     parser.add_argument(
-        "--modulus", type=float, metavar="E", help="film laws: reduced modulus E* of the two bodies in Pa"
+        "--modulus", type=options.number, metavar="E", help="film laws: reduced modulus E* of the two bodies in Pa"
     )
     parser.add_argument(
-        "--within", type=float, metavar="X", help="level 0: error of e that bounds its range (0.02)"
+        "--within", type=options.number, metavar="X", help="level 0: error of e that bounds its range (0.02)"
     )
     parser.add_argument(
         "--st-range", type=stokes_range, metavar="LOW:HIGH",
@@ -76,8 +81,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def stokes_range(text: str) -> tuple[float, float]:
     """``LOW:HIGH``, positive and in order, as an argument type."""
     try:
-        low, high = map(float, text.split(":"))
-    except ValueError:
+        low, high = map(options.number, text.split(":"))
+    except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form LOW:HIGH") from None
     if not 0 < low < high < float("inf"):
         raise argparse.ArgumentTypeError(f"{text!r} must be positive and rise")

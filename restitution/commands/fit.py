@@ -30,7 +30,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     fit_options.add_plan(parser)
     fit_trajectory.add_options(parser)
     parser.add_argument("--posterior", action="store_true", help="also sample the posterior (emcee)")
-    parser.add_argument("--seed", type=int, default=0, help="of the posterior's random numbers (0)")
+    parser.add_argument("--seed", type=options.whole, default=0, help="of the posterior's random numbers (0)")
     parser.add_argument("--out", metavar="FILE", help="write the fit as JSON, for predict and design")
     parser.add_argument("--report", metavar="FOLDER", help="write figure, tables, page and JSON")
     parser.add_argument("--template", metavar="FOLDER", help="write impacts.csv to start from")
@@ -65,7 +65,8 @@ def run(args: argparse.Namespace) -> None:
         raise InputError(Defect("belongs to --trajectory", field="--wake", value=args.wake))
     observations = read(args.data, fit_options.reading_of(args))
     law = args.law or "eq4_exponential"
-    fit = estimate(fit_options.plan_of(args, law, args.law_stokes or observations.convention), observations)
+    stokes = fit_options.convention_of_formula(args.law_stokes, [law], observations.convention)
+    fit = estimate(fit_options.plan_of(args, law, stokes), observations)
     if args.strict:
         refuse(fit.doubts)
     chain = None
@@ -75,13 +76,13 @@ def run(args: argparse.Namespace) -> None:
 
         chain = chain_of(sample(fit.likelihood, fit.maximum, args.seed, progress=sys.stderr.isatty()))
     result = result_of(fit, chain)
-    if args.out:
-        write_whole(args.out, result.to_json())
     written = []
     if args.report:
         from restitution.report.fits import report
 
-        written = report.write(args.report, result)
+        written = report.write(args.report, result, out=args.out)
+    elif args.out:
+        write_whole(args.out, result.to_json())
     show_facts(describe(result))
     for name in written:
         show(str(Path(args.report) / name))

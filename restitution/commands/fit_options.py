@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
@@ -11,6 +12,10 @@ from restitution.commands import options
 if TYPE_CHECKING:
     from restitution.calibration.estimation.plan import Plan
     from restitution.calibration.reading.reading import Reading
+
+
+_LARGEST = 1e12
+"""Of a prior: nothing that is estimated here is larger."""
 
 
 def add_data(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +36,7 @@ def add_data(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--edge",
-        type=float,
+        type=options.number,
         metavar="H",
         help="gap in diameters at which the film ends, for the speed far: of a track, which one to take; of a "
         "table, which one its e_eff mean (default: as its column film_edge_d states, else 0.1)",
@@ -93,16 +98,21 @@ def add_plan(parser: argparse.ArgumentParser) -> None:
 def _bounds(text: str) -> tuple[str, tuple[float, float]]:
     parts = re.fullmatch(r"([A-Za-z_]\w*)=([^:]+):([^:]+)", text)
     try:
-        return parts[1], (float(parts[2]), float(parts[3]))
-    except (TypeError, ValueError):
+        return parts[1], (_end(parts[2]), _end(parts[3]))
+    except (TypeError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=LOW:HIGH") from None
+
+
+def _end(text: str) -> float:
+    """A bound: a number, or inf and -inf, where there is none."""
+    return float(text) if text in ("inf", "-inf") else options.number(text)
 
 
 def _prior(text: str) -> tuple[str, tuple[float, float]]:
     parts = re.fullmatch(r"([A-Za-z_]\w*)=([^+]+)\+-(.+)", text)
     try:
-        return parts[1], (float(parts[2]), float(parts[3]))
-    except (TypeError, ValueError):
+        return parts[1], (options.number(parts[2]), options.number(parts[3]))
+    except (TypeError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=MEAN+-SIGMA") from None
 
 
@@ -118,7 +128,7 @@ def reading_of(args: argparse.Namespace) -> Reading:
         stokes=args.stokes,
         speed=None if args.speed is None else Speed(args.speed),
         edge=None if args.edge is None else film_edge(args.edge, "--edge"),
-        columns=dict(args.column),
+        columns=options.once("--column", args.column),
         conditions=read_conditions(args.conditions) if args.conditions else None,
         unphysical=args.allow_unphysical,
         axes=(args.x, args.y),
@@ -126,12 +136,30 @@ def reading_of(args: argparse.Namespace) -> Reading:
     )
 
 
+def convention_of_formula(law_stokes: str | None, laws: Sequence[str], otherwise: str) -> str:
+    """Which Stokes number a formula takes; raises :class:`InputError` where no law is one, or it is unknown."""
+    from restitution.errors import Defect, InputError
+    from restitution.stokes import convention
+
+    if law_stokes is None:
+        return otherwise
+    if all(law.isidentifier() for law in laws):
+        rule = "is for a formula: a law by name knows its own Stokes number"
+        raise InputError(Defect(rule, field="--law-stokes", value=law_stokes))
+    convention(law_stokes)
+    return law_stokes
+
+
 def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, strict: bool = True) -> Plan:
     """What is estimated, from the options; without ``strict`` those that the law does not know are left out."""
     from restitution.calibration.estimation.plan import Plan
     from restitution.calibration.estimation.rebound_model import model_of
+    from restitution.errors import Defect, InputError
 
-    bounds = dict(args.bounds)
+    bounds, fixed = options.once("--bounds", args.bounds), options.once("--fix", args.fix)
+    priors = {n: _normal(n, *value) for n, value in options.once("--prior", args.prior).items()}
+    for name in sorted(fixed.keys() & ({*args.free} | priors.keys())):
+        raise InputError(Defect("is fixed, and asked to be free or given a prior", field=name))
     model = model_of(law, bounds, law_stokes)
     known = {p.name for p in model.parameters} | {"e_dry"}
 
@@ -140,12 +168,12 @@ def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, s
 
     return Plan(
         model=model,
-        fixed=own(dict(args.fix)),
+        fixed=own(fixed),
         free=frozenset(own(dict.fromkeys(args.free))),
         bounds=own(bounds),
-        priors=own({name: _normal(name, *value) for name, value in args.prior}),
+        priors=own(priors),
         e_dry=_e_dry(args.e_dry),
-        separate=own(dict(args.separate)),
+        separate=own(options.once("--separate", args.separate)),
         scatter=not args.no_scatter,
         offsets={"auto": None, "none": False, "source": True}[args.offsets],
         robust=args.robust,
@@ -159,21 +187,22 @@ def _e_dry(text: str | None):
         return text
     mean, _, sigma = text.partition("+-")
     try:
-        return _normal("--e-dry", float(mean), float(sigma)) if sigma else float(mean)
-    except ValueError as error:
-        if isinstance(error, InputError):
-            raise
+        value = options.number(mean)
+        return _normal("--e-dry", value, options.number(sigma)) if sigma else value
+    except argparse.ArgumentTypeError:
         raise InputError(Defect("must be VALUE, VALUE+-SIGMA or free", field="--e-dry", value=text)) from None
 
 
 def _normal(name: str, mean: float, sigma: float):
-    import math
-
     from restitution.calibration.estimation.parameters import Normal
     from restitution.errors import Defect, InputError
 
-    if not (math.isfinite(mean) and 0 < sigma < math.inf):
+    if not (abs(mean) <= _LARGEST and 0 < sigma <= _LARGEST):
         raise InputError(
-            Defect("a prior needs a finite mean and a positive error", field=name, value=f"{sigma:g}")
+            Defect(
+                f"a prior needs a mean and a positive error, both at most {_LARGEST:g}",
+                field=name,
+                value=f"{mean:g}+-{sigma:g}",
+            )
         )
     return Normal(mean, sigma)

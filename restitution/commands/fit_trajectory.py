@@ -82,16 +82,18 @@ def run(args: argparse.Namespace) -> None:
 
         chain = sample(fit.fit.likelihood, fit.fit.maximum, args.seed, progress=sys.stderr.isatty())
         result = result.model_copy(update={"posterior": chain_of(chain)})
-    if args.out:
+    written = []
+    if args.report:
+        from restitution.report.fits import trajectories as report
+
+        written = report.write(args.report, fit, result, args.out)
+    elif args.out:
         write_whole(args.out, result.to_json())
     show_facts(describe(result))
     show_facts(_slopes(fit))
     _show_distances(result)
-    if args.report:
-        from restitution.report.fits import trajectories as report
-
-        for name in report.write(args.report, fit, result):
-            show(str(Path(args.report) / name))
+    for name in written:
+        show(str(Path(args.report) / name))
 
 
 def _show_records(measured: Measured) -> None:

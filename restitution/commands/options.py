@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from restitution.foreign.settings import Settings
 
+_MOST_DIGITS = 9
 _TRACK_COLUMNS = {"time_s": "time", "gap_m": "position", "velocity_m_s": "velocity"}
 
 
@@ -30,7 +31,7 @@ def add_track(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--settings", metavar="FILE", help="all of this in a TOML file; options go before it")
     group.add_argument("--unit", metavar="U", help="of positions: m, mm, px, 0.3mm, d; of velocities also mm/s")
     group.add_argument("--time-unit", metavar="U", help="s, ms, frame, 0.5ms, sqrt(d/g)")
-    group.add_argument("--fps", type=float, metavar="N", help="frames a second, of the camera")
+    group.add_argument("--fps", type=number, metavar="N", help="frames a second, of the camera")
     group.add_argument("--pixel", metavar="LENGTH", help="length of a pixel, as in 0.125mm")
     group.add_argument(
         "--direction", choices=("up", "down"), help="whether values grow away from the wall (up) or towards it"
@@ -66,7 +67,8 @@ def settings_of(args: argparse.Namespace) -> Settings:
 
     if args.fps is not None and not 0 < args.fps < math.inf:
         raise InputError(Defect("must be positive and finite", field="--fps", value=f"{args.fps:g}"))
-    columns = {_TRACK_COLUMNS[name]: own for name, own in args.column if name in _TRACK_COLUMNS}
+    given_columns = once("--column", args.column)
+    columns = {_TRACK_COLUMNS[name]: own for name, own in given_columns.items() if name in _TRACK_COLUMNS}
     given = Settings(
         unit=args.unit,
         time_unit=args.time_unit,
@@ -85,9 +87,38 @@ def _wall(text: str) -> float | str:
     if text == "rest":
         return text
     try:
-        return float(text)
-    except ValueError:
+        return number(text)
+    except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(f"{text!r} is neither a number nor 'rest'") from None
+
+
+def number(text: str) -> float:
+    """A finite number as an argument type, of the same form as in tables."""
+    from restitution import units
+
+    try:
+        return units.number(text)
+    except units.UnitError as error:
+        raise argparse.ArgumentTypeError(f"{text!r} {error}") from None
+
+
+def whole(text: str) -> int:
+    """A whole number, 0 or above, as an argument type."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= _MOST_DIGITS):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 2^31")
+    return int(text)
+
+
+def once(option: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Pairs as a mapping; raises :class:`InputError` for a name that is given twice."""
+    from restitution.errors import Defect, InputError
+
+    found: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise InputError(Defect(f"{name} is given twice", field=option))
+        found[name] = value
+    return found
 
 
 def pair(text: str) -> tuple[str, str]:
@@ -101,18 +132,15 @@ def pair(text: str) -> tuple[str, str]:
 def assignment(text: str) -> tuple[str, float]:
     """``NAME=NUMBER`` as an argument type."""
     name, value = pair(text)
-    try:
-        return name, float(value)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
+    return name, number(value)
 
 
 def amount(text: str) -> tuple[str, float | str]:
     """``NAME=NUMBER``, or ``NAME=NUMBER UNIT`` for what knows its unit, as an argument type."""
     name, value = pair(text)
     try:
-        return name, float(value)
-    except ValueError:
+        return name, number(value)
+    except argparse.ArgumentTypeError:
         return name, value
 
 
@@ -135,8 +163,8 @@ def numbers_in(unit: str) -> Callable[[str], list[float]]:
 
 def _plain_or_in_si(part: str, unit: str, in_si: Callable[[str, str], float]) -> float:
     try:
-        return float(part)
-    except ValueError:
+        return number(part)
+    except argparse.ArgumentTypeError:
         return in_si(part, unit)
 
 

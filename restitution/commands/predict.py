@@ -47,12 +47,14 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--edge",
-        type=float,
+        type=options.number,
         metavar="H",
         help="gap in diameters at which the film ends whose loss e_eff is to have, if another than the fit's: "
         "converted by the point particle, for --fluid and --sphere",
     )
-    parser.add_argument("--e-dry", type=float, metavar="E", help="dry restitution, where it was not estimated")
+    parser.add_argument(
+        "--e-dry", type=options.number, metavar="E", help="dry restitution, where it was not estimated"
+    )
     parser.add_argument(
         "--level",
         action="append",
@@ -66,7 +68,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def values(text: str) -> dict[str, float | str]:
     """``key=number,key=number``, with units or in SI, as an argument type."""
-    return dict(options.amount(part.strip()) for part in text.split(","))
+    given = [options.amount(part.strip()) for part in text.split(",")]
+    if len(dict(given)) < len(given):
+        raise argparse.ArgumentTypeError(f"{text!r} gives a name twice")
+    return dict(given)
 
 
 def conditions_of(args: argparse.Namespace) -> Conditions | None:
@@ -91,7 +96,7 @@ def run(args: argparse.Namespace) -> None:
     """Print e_eff and its intervals, one line a speed."""
     import numpy as np
 
-    from restitution.calibration.result.fit_result import read_fit
+    from restitution.calibration.result.fit_file import read_fit
     from restitution.calibration.result.fit_summary import speed_in_words
     from restitution.calibration.result.prediction import predict, predict_at, stokes_of
     from restitution.errors import InputError
@@ -109,9 +114,10 @@ def run(args: argparse.Namespace) -> None:
         low, high = result.stokes_range
         speeds = np.array(args.speed) if args.speed else np.geomspace(low, high, 8) / per_speed
         St = speeds * per_speed
+    levels = options.once("--level", args.level)
     edge = result.edge_d if args.edge is None else args.edge
     if edge == result.edge_d:
-        prediction = predict(result, St, args.e_dry, conditions, dict(args.level))
+        prediction = predict(result, St, args.e_dry, conditions, levels)
     elif conditions is None:
         raise InputError(
             f"--edge {edge:g}: the fit is of {result.edge_d:g} d; the conversion needs --fluid and --sphere, or "
@@ -119,7 +125,7 @@ def run(args: argparse.Namespace) -> None:
         )
     else:
         speeds = St / stokes_of(result, np.ones(1), conditions)[0]
-        prediction = predict_at(result, speeds, edge, conditions, args.e_dry, dict(args.level))
+        prediction = predict_at(result, speeds, edge, conditions, args.e_dry, levels)
     rows = []
     for i, x in enumerate(St):
         ends = [

@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int | None:
     from restitution.commands.results import folder_for
     from restitution.errors import InputError, StoppedError
     from restitution.runs.record import RESOLVED
-    from restitution.runs.simulate import CHECKPOINT, simulate
+    from restitution.runs.simulate import CHECKPOINT, SO_FAR, simulate
 
     if args.list:
         _list()
@@ -71,7 +71,8 @@ def run(args: argparse.Namespace) -> int | None:
     try:
         simulate(case, folder, resume=args.resume, snapshots=args.snapshots, show=say, file=args.case)
     except StoppedError as error:
-        say(f"error: {error}; the trajectory so far is in {folder / 'trajectory_so_far.csv'}")
+        left = folder / SO_FAR
+        say(f"error: {error}" + (f"; the trajectory so far is in {left}" if left.exists() else ""))
         return 2
     except KeyboardInterrupt:
         if (folder / CHECKPOINT).exists():

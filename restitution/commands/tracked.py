@@ -27,13 +27,17 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="which speed of approach and rebound: of the motion outside the film (default), extrapolated to "
         "contact from all frames, or the slope over a window of frames",
     )
-    parser.add_argument("--frames", type=int, default=2, metavar="N", help="frames of the window on each side (2)")
-    parser.add_argument("--film", type=float, default=0.1, metavar="H", help="film thickness in diameters (0.1)")
+    parser.add_argument(
+        "--frames", type=options.whole, default=2, metavar="N", help="frames of the window on each side (2)"
+    )
+    parser.add_argument(
+        "--film", type=options.number, default=0.1, metavar="H", help="film thickness in diameters (0.1)"
+    )
     parser.add_argument(
         "--stokes", default="st", metavar="CONVENTION", help="st (default), st_star, st_d, st_18, st_b"
     )
     parser.add_argument(
-        "--sigma", type=float, metavar="S", help="noise of the track in its unit (default: estimated)"
+        "--sigma", type=options.number, metavar="S", help="noise of the track in its unit (default: estimated)"
     )
     options.add_columns(parser)
     options.add_track(parser)

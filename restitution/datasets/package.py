@@ -10,7 +10,7 @@ import math
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, FiniteFloat, model_validator
 
 from restitution.conditions import Conditions, NonNegative, Record
 from restitution.errors import Defect
@@ -19,6 +19,8 @@ from restitution.tables.schema import read_record
 
 
 def _inside(path: str) -> str:
+    if not path or not path.isprintable():
+        raise ValueError("must be a path of characters that can be printed")
     if PurePosixPath(path).is_absolute() or ".." in PurePosixPath(path).parts:
         raise ValueError("must lie inside the package")
     return path
@@ -105,7 +107,7 @@ class Resource(Record):
     digitisation_error: ReadingError
     conditions: Conditions | None = None
     conventions: QuotedConventions | None = None
-    quoted: dict[str, float | tuple[float, ...]] = Field(default_factory=dict)
+    quoted: dict[str, FiniteFloat | tuple[FiniteFloat, ...]] = Field(default_factory=dict)
     measured: tuple[str, ...]
     derived: dict[str, str]
     notes: tuple[str, ...] = ()

@@ -8,18 +8,19 @@ impacts have one ratio of Stokes numbers, not of fits to whole trajectories.
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.result.fit_result import FORMAT, FitResult, parameter_values, read_fit
+from restitution.calibration.result.fit_file import read_fit
+from restitution.calibration.result.fit_result import FORMAT, FitResult, parameter_values
 from restitution.calibration.result.prediction import predict, stokes_of
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.export.closure import Closure, Constant
+from restitution.inputs import read_json
 from restitution.laws import REGISTRY
 from restitution.stokes import Speed
 
@@ -43,8 +44,8 @@ def read_unedited(path: str | Path) -> FitResult:
 
 def _check_version(path: str | Path) -> None:
     try:
-        content = json.loads(Path(path).read_bytes())
-    except (OSError, ValueError):
+        content = read_json(path)
+    except InputError:
         return  # read_fit says what is wrong
     given = content.get("format") if isinstance(content, dict) else None
     kind, _, version = FORMAT.partition("/")

@@ -6,6 +6,7 @@ import codecs
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
+from restitution.inputs import read_bytes
 
 _BINARY = {
     b"PK\x03\x04": "is a spreadsheet or an archive, no text; save the table as CSV",
@@ -21,14 +22,7 @@ _MARKUP = {"{": "JSON", "<": "XML"}
 def read_lines(path: str | Path) -> list[str]:
     """The lines of a file without their ends; raises :class:`InputError` where it has no text."""
     file = str(path)
-    try:
-        data = Path(path).read_bytes()
-    except FileNotFoundError:
-        raise InputError(Defect("does not exist", file=file)) from None
-    except IsADirectoryError:
-        raise InputError(Defect("is a folder; a file is needed", file=file)) from None
-    except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", file=file)) from None
+    data = read_bytes(path)
     for mark, rule in _BINARY.items():
         if data.startswith(mark):
             raise InputError(Defect(rule, file=file))

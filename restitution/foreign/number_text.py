@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Literal
 
-from restitution.tables.csv_text import NUMBER
+from restitution.units import NUMBER
 
 Decimal = Literal[".", ","]
 

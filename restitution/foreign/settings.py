@@ -15,9 +15,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationError
 
-from restitution.conditions import Conditions, Positive, Record, defects_of, read_toml
+from restitution.conditions import Conditions, Positive, Record, defects_of
 from restitution.errors import Defect, InputError
 from restitution.foreign.number_text import Decimal
+from restitution.inputs import read_toml
 from restitution.units import LENGTH, PURE, SPEED, TIME, Dimension, Quantity, UnitError, quantity
 
 Text = Annotated[str, Field(min_length=1)]

@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from restitution.errors import printable
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -50,6 +52,15 @@ def save(figure: Figure, dpi: int = 160) -> Drawing:
     figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     figure.savefig(png, format="png", dpi=dpi, metadata={"Software": None})
     return Drawing(svg.getvalue(), png.getvalue())
+
+
+LONGEST_NAME = 60
+"""Characters of a user's name in a figure."""
+
+
+def as_text(name: str) -> str:
+    """A text of a user's as it is to be drawn: its dollars begin no formula, and it is of a length that fits."""
+    return printable(name, LONGEST_NAME).replace("$", r"\$")
 
 
 def stokes_axis(ax: Axes) -> None:

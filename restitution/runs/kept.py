@@ -18,7 +18,7 @@ from restitution.cases.case import Case
 from restitution.errors import Defect, InputError
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.flow_pictures import FlowFrames
-from restitution.runs.record import RESOLVED, RunRecord, read_record
+from restitution.runs.record import RESOLVED, RunRecord, changed_files, read_record
 from restitution.runs.simulate import KEPT, can_resume, simulate
 from restitution.runs.validity import physics
 from restitution.runs.validity.program import program_hash
@@ -120,7 +120,7 @@ def _as_it_was_run(place: Path, about: RunRecord, changed: tuple[str, ...] | Non
 
 
 def _result(place: Path, case: Case, about: RunRecord, changed: tuple[str, ...] = ()) -> KeptRun:
-    tables, defects = {}, []
+    tables, defects = {}, changed_files(place, about, KEPT)
     for name, table in (("trajectory", "trajectory"), ("velocity", "settling"), ("impacts", "impact")):
         try:
             tables[name] = _table(place / f"{name}.csv", datasets.schema(table), name == "impacts")

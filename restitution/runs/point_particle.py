@@ -41,7 +41,7 @@ from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.runs.closures import edge_of, effective_law, measured_values
 from restitution.runs.filmed import filmed, simulated_impacts
-from restitution.runs.record import POINT_PARTICLE, RunRecord, SolverContact
+from restitution.runs.record import FILE, POINT_PARTICLE, RunRecord, SolverContact, digest
 from restitution.runs.validity.program import program_hash
 from restitution.stokes import StokesNumber
 from restitution.tables.writing import table_text
@@ -49,11 +49,12 @@ from restitution.tables.writing import table_text
 if TYPE_CHECKING:
     import pandas as pd
 
-FILES = ("trajectory.csv", "velocity.csv", "impacts.csv", "run.json")
 ROW_D = 0.01
 """Way in diameters that the terminal speed makes between two rows."""
 _LONGEST = 30.0
 """A sphere that has not met the wall after so many times its fall at terminal speed does not meet it."""
+_MOST_ROWS = 1e7
+"""Of a table: 240 MB in memory."""
 _FIELDS = {
     "release.gap": "release.gap_d", "end": "run.duration", "rebound": "contact.law",
     "sphere.density / fluid.density": "sphere.density",
@@ -149,6 +150,7 @@ def predict(case: Case, file: str = "", closures: Closures | None = None) -> Pre
             raise InputError(Defect(rule, field="run.duration", value=f"{case.run.duration:g}"))
         fall = release.gap / terminal_speed(conditions) + terminal_speed(conditions) / conditions.free_fall
         path = bounce(conditions, release, closures, ends or _LONGEST * fall)
+        _check_rows(case, path)
         if case.run.after_contact is not None:
             if not path.impacts and ends is None:
                 rule = f"no contact within {_LONGEST * fall:.3g} s, {_LONGEST:g} times the fall: give run.duration"
@@ -164,12 +166,26 @@ def predict(case: Case, file: str = "", closures: Closures | None = None) -> Pre
     return Prediction(case, path, release, first)
 
 
+def _check_rows(case: Case, path: Trajectory) -> None:
+    """Refuse a table that nobody could keep."""
+    span = (path.impacts[0].time_s if path.impacts else 0.0) + (case.run.after_contact or 0.0)
+    for field, seconds in (("run.after_contact", span), ("run.duration", case.run.duration or 0.0)):
+        if seconds / row_s(case) > _MOST_ROWS:
+            rule = f"gives more than {_MOST_ROWS:.0e} rows {row_s(case):.2g} s apart: fewer seconds"
+            raise InputError(Defect(rule, field=field, value=f"{seconds:g}"))
+
+
 def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
     """The tables and ``run.json`` into ``folder``, all or none; ``seconds`` is what the prediction took."""
     case, path = prediction.case, prediction.path
     table = prediction.table()
     trajectory, velocity = table[["time_s", "gap_m"]], table[["time_s", "velocity_m_s"]]
     impacts, notes = simulated_impacts(trajectory, case)
+    contents = {
+        "trajectory.csv": table_text(trajectory),
+        "velocity.csv": table_text(velocity),
+        "impacts.csv": table_text(impacts),
+    }
     record = RunRecord(
         model=POINT_PARTICLE,
         case=case.name,
@@ -188,9 +204,9 @@ def write(prediction: Prediction, folder: str | Path, seconds: float) -> None:
         code_hash=program_hash(),
         filmed=filmed(case),
         case_as_run=case.model_dump(mode="json", exclude_none=True),
+        files={name: digest(content) for name, content in contents.items()},
     )
-    contents = (table_text(trajectory), table_text(velocity), table_text(impacts), record.text())
-    write_folder(folder, dict(zip(FILES, contents, strict=True)))
+    write_folder(folder, {**contents, FILE: record.text()})
 
 
 def _numbers(prediction: Prediction) -> dict[str, float]:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
+from restitution.conditions import defects_of
 from restitution.errors import Defect, InputError
+from restitution.inputs import read_bytes, read_json
 
 FILE = "run.json"
 RESOLVED, POINT_PARTICLE = "resolved", "point particle"
@@ -24,9 +28,9 @@ class SolverContact(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    time_s: float
-    speed_in_m_s: float
-    speed_out_m_s: float
+    time_s: FiniteFloat
+    speed_in_m_s: Annotated[FiniteFloat, Field(ge=0)]
+    speed_out_m_s: Annotated[FiniteFloat, Field(ge=0)]
 
 
 class RunRecord(BaseModel):
@@ -34,7 +38,8 @@ class RunRecord(BaseModel):
 
     ``physics`` is the version that the program agreed with when the run was made, None where it departed,
     ``code_hash`` the text of that program, ``told`` what the solver was told (:mod:`restitution.runs.validity`);
-    ``filmed`` is what the table of impacts was taken with beside the trajectory.
+    ``filmed`` is what the table of impacts was taken with beside the trajectory. ``files`` has the SHA-256 of each
+    file written with it, ``seal`` that of all its other fields; older records have neither.
     """
 
     model: str = RESOLVED
@@ -42,12 +47,12 @@ class RunRecord(BaseModel):
     title: str = ""
     date: str
     finished: bool
-    seconds: float
-    threads: int
-    steps: int
-    shape: tuple[int, int, int]
-    step_s: float
-    numbers: dict[str, float]
+    seconds: Annotated[FiniteFloat, Field(ge=0)]
+    threads: Annotated[int, Field(ge=0)]
+    steps: Annotated[int, Field(ge=1)]
+    shape: tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)]]
+    step_s: Annotated[FiniteFloat, Field(gt=0)]
+    numbers: dict[str, FiniteFloat]
     closures: dict[str, Any] | None = None
     contacts: tuple[SolverContact, ...]
     notes: tuple[str, ...] = ()
@@ -56,11 +61,38 @@ class RunRecord(BaseModel):
     told: dict[str, tuple[float | str, ...]] = {}
     filmed: dict[str, tuple[float | str, ...]] = {}
     case_as_run: dict[str, Any]
+    files: dict[str, str] = {}
+    seal: str | None = None
 
     def text(self) -> str:
-        """The record as JSON, an entry of a table or list a line."""
-        content = self.model_dump(mode="json", exclude_none=True)
+        """The record as JSON, an entry of a table or list a line, under its seal."""
+        content = self.model_dump(mode="json", exclude_none=True, exclude={"seal"})
+        content["seal"] = _seal(content)
         return "{\n" + ",\n".join(f' "{name}": {_lines(value)}' for name, value in content.items()) + "\n}\n"
+
+
+def digest(content: str | bytes) -> str:
+    """SHA-256 of a file's content."""
+    return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
+
+
+def changed_files(folder: Path, record: RunRecord, names: Iterable[str]) -> list[Defect]:
+    """Those of the named files that are no longer as they were written with the record."""
+    defects = []
+    for name in names:
+        path, known = folder / name, record.files.get(name)
+        if known is None:
+            continue
+        if not path.is_file():
+            defects.append(Defect("is missing", file=str(path)))
+        elif digest(read_bytes(path)) != known:
+            rule = "has changed since it was written: its SHA-256 is not that in run.json"
+            defects.append(Defect(rule, file=str(path)))
+    return defects
+
+
+def _seal(content: dict[str, Any]) -> str:
+    return digest(json.dumps(content, sort_keys=True))
 
 
 def _lines(value: Any) -> str:
@@ -80,9 +112,16 @@ def read_record(folder: Path, mend: str = "run the case again") -> RunRecord | N
     if not path.is_file():
         return None
     try:
-        record = RunRecord.model_validate(json.loads(path.read_bytes()))
-    except (ValidationError, ValueError):
-        raise InputError(Defect(f"is damaged: {mend}", file=str(path))) from None
+        content = read_json(path)
+        record = RunRecord.model_validate(content)
+    except ValidationError as error:
+        raise InputError(Defect(f"is damaged: {mend}", file=str(path)), *defects_of(error, str(path))) from None
+    except InputError as error:
+        raise InputError(Defect(f"is damaged: {mend}", file=str(path)), *error.defects) from None
+    sealed = content.pop("seal", None)
+    if (record.files or sealed is not None) and sealed != _seal(content):
+        rule = f"has changed since it was written, as its seal shows: {mend}"
+        raise InputError(Defect(rule, file=str(path), field="seal"))
     if not record.finished:
         raise InputError(Defect(f"is of a run that did not finish: {mend}", file=str(path)))
     return record
@@ -91,6 +130,6 @@ def read_record(folder: Path, mend: str = "run the case again") -> RunRecord | N
 def model_in(folder: Path) -> str | None:
     """Which model made the results in a folder, damaged or not; None where there are none."""
     try:
-        return json.loads((folder / FILE).read_text("utf-8")).get("model", RESOLVED)
-    except (OSError, ValueError, AttributeError):
+        return read_json(folder / FILE).get("model", RESOLVED)
+    except (InputError, AttributeError):
         return None

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +20,7 @@ import lbm
 from lbm.faces.records import AXES
 from lbm.fluid import cache
 from lbm.fluid.fields import with_image
+from lbm.io import checkpoint as lbm_checkpoint
 from lbm.observers import DivergenceGuard, FieldOutput
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError, StoppedError
@@ -33,6 +34,7 @@ _LONGEST = 4.0
 """A run without contact is given up after this many times the fall at the reference speed."""
 _LONGEST_RUN = 100
 _NEAR_D = 0.5
+_STOP = "stop"
 
 
 class ResolvedRun:
@@ -57,6 +59,8 @@ class ResolvedRun:
         self.warnings += [str(w.message) for w in caught]
         self.guard = DivergenceGuard()
         self._unguarded = 0
+        self._stop = 0
+        """The step at which the run is looked at next, which an interrupt does not change."""
 
     @property
     def step_s(self) -> float:
@@ -101,8 +105,21 @@ class ResolvedRun:
         return min(first + span.after_contact, span.duration or math.inf)
 
     @property
+    def is_due(self) -> bool:
+        """Whether the run has come to the end of an :meth:`advance`, where it is to be looked at."""
+        return self.simulation.steps == self._stop
+
+    @property
+    def gave_up(self) -> bool:
+        """Whether the sphere has not met the wall in the time that it was given for that."""
+        span = self.case.run
+        waits = span.duration is None and not self.contacts
+        above = self.gap_d * self.case.sphere.diameter > (self.case.floor or 0.0)
+        return waits and above and self.time_s >= self._longest
+
+    @property
     def finished(self) -> bool:
-        """Whether the span of the case is over."""
+        """Whether the span of the case is over, or the run :attr:`gave_up`."""
         span, found, now = self.case.run, self.contacts, self.time_s
         if span.duration is not None and now >= span.duration:
             return True
@@ -126,8 +143,18 @@ class ResolvedRun:
     def advance(self, observers: tuple = ()) -> None:
         """Advance by up to a hundred steps, fewer as the first contact nears, so that its moment is not missed.
 
-        Raises :class:`StoppedError` for a run that diverges or cannot write.
+        Where that was interrupted, go on to the step that was chosen then. Raises :class:`StoppedError` for a run
+        that diverges or cannot write.
         """
+        if self.simulation.steps >= self._stop:
+            self._stop = self.simulation.steps + self._steps_to_look()
+        steps = self._stop - self.simulation.steps
+        due = self._unguarded + steps >= _LONGEST_RUN
+        with _in_our_words():
+            self.simulation.run(steps, observers, guard=self.guard if due else None)
+        self._unguarded = 0 if due else self._unguarded + steps
+
+    def _steps_to_look(self) -> int:
         steps = _LONGEST_RUN
         if not math.isfinite(self.gap_d):
             self.check()  # names the cell, if the flow is to blame
@@ -136,27 +163,26 @@ class ResolvedRun:
             least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
             speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
             steps = int(min(max(0.5 * self.gap_d * self.flow.length / speed, 1), steps))
-        steps = min(steps, self._left())
-        self._unguarded += steps
-        due = self._unguarded >= _LONGEST_RUN
-        with _in_our_words():
-            self.simulation.run(steps, observers, guard=self.guard if due else None)
-        self._unguarded = 0 if due else self._unguarded
+        return min(steps, self._left())
 
     def check(self) -> None:
         """Raise :class:`StoppedError` if the flow has diverged."""
         with _in_our_words():
             self.guard(self.simulation)
 
-    def save(self, path: Path) -> None:
-        """Write a checkpoint; raises :class:`StoppedError` where that cannot be."""
+    def save(self, path: Path, owner: str, beside: Mapping[str, np.ndarray]) -> None:
+        """Write a checkpoint of the run ``owner``; raises :class:`StoppedError` where that cannot be."""
         with _in_our_words():
-            self.simulation.save(path)
+            self.simulation.save(path, owner, {_STOP: np.array([self._stop, self._unguarded]), **beside})
 
-    def restore(self, path: Path) -> None:
-        """Continue from a checkpoint; raises :class:`InputError` for one that does not fit."""
+    def restore(self, path: Path, owner: str) -> dict[str, np.ndarray]:
+        """Continue from a checkpoint; what was saved beside. Raises :class:`InputError` for one of another run."""
         with _in_our_words():
-            self.simulation.restore(path)
+            beside = self.simulation.restore(path, owner)
+        if _STOP not in beside:
+            raise InputError(Defect("is no checkpoint of a run", file=str(path)))
+        self._stop, self._unguarded = map(int, beside.pop(_STOP))
+        return beside
 
     def snapshots(self, folder: Path) -> FieldOutput:
         """An observer that writes the flow for ParaView."""
@@ -206,9 +232,9 @@ class ResolvedRun:
         return self.flow.scales.si(curl, "frequency")
 
 
-def kernel_folder() -> Path:
-    """Where the compiled kernels of this version of the solver are kept."""
-    return cache.directory()
+def kernel_folder() -> Path | None:
+    """Where the compiled kernels of this version of the solver are kept; None where they cannot be."""
+    return cache.own_directory()
 
 
 @contextmanager
@@ -220,3 +246,11 @@ def _in_our_words() -> Iterator[None]:
         raise InputError(str(error)) from None
     except (lbm.DivergenceError, lbm.OutputError) as error:
         raise StoppedError(str(error)) from None
+
+
+def owner_of(checkpoint: Path) -> str | None:
+    """Which run a checkpoint is of; None where there is none that can be read."""
+    try:
+        return lbm_checkpoint.described(checkpoint).get("owner")
+    except (lbm.InputError, AttributeError):
+        return None

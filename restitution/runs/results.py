@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from restitution.runs.filmed import filmed, simulated_impacts
 from restitution.runs.flow_pictures import FlowFrames
-from restitution.runs.record import FILE, RunRecord, SolverContact
+from restitution.runs.record import FILE, RunRecord, SolverContact, digest
 from restitution.runs.resolved import ResolvedRun
 from restitution.runs.validity import physics
 from restitution.runs.validity.program import program_hash
@@ -18,18 +18,26 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def results(run: ResolvedRun, frames: FlowFrames, seconds: float) -> dict[str, str | bytes]:
-    """The files of a run as it now stands, but the motion of every step."""
+def results(run: ResolvedRun, frames: FlowFrames, seconds: float, every_step: bool) -> dict[str, str | bytes]:
+    """The files of a run as it now stands, the motion of ``every_step`` among them or not."""
     case, motion = run.case, _rows(run)
     trajectory = motion[["time_s", "gap_m"]]
     velocity = motion[["time_s", "vz_m_s"]].rename(columns={"vz_m_s": "velocity_m_s"})
     impacts, notes = simulated_impacts(trajectory, case)
     first = run.contacts[0].time_s if run.contacts else 0.0
+    contents: dict[str, str | bytes] = {
+        "trajectory.csv": table_text(trajectory),
+        "velocity.csv": table_text(velocity),
+        "impacts.csv": table_text(impacts),
+        "flow.npz": frames.as_bytes(),
+    }
+    if every_step:
+        contents["motion.csv"] = table_text(run.motion(), "%.7g")
     record = RunRecord(
         case=case.name,
         title=case.title,
         date=time.strftime("%Y-%m-%d", time.gmtime()),
-        finished=run.finished,
+        finished=run.finished and not run.gave_up,
         seconds=round(seconds, 1),
         threads=run.simulation.threads,
         steps=run.simulation.steps,
@@ -43,14 +51,9 @@ def results(run: ResolvedRun, frames: FlowFrames, seconds: float) -> dict[str, s
         told=told(case),
         filmed=filmed(case),
         case_as_run=case.model_dump(mode="json", exclude_none=True),
+        files={name: digest(content) for name, content in contents.items()},
     )
-    return {
-        "trajectory.csv": table_text(trajectory),
-        "velocity.csv": table_text(velocity),
-        "impacts.csv": table_text(impacts),
-        FILE: record.text(),
-        "flow.npz": frames.as_bytes(),
-    }
+    return contents | {FILE: record.text()}
 
 
 def trajectory_of(run: ResolvedRun) -> pd.DataFrame:

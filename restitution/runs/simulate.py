@@ -12,12 +12,12 @@ file                content
 ==================  =====================================================================================
 
 A run that is stopped leaves ``checkpoint.h5`` and what it has of the tables; the same command with ``resume``
-continues it. Files appear whole or not at all.
+continues it, and ends with the same files bit for bit, but for date and seconds in ``run.json``. Files appear
+whole or not at all; two processes do not write to one folder.
 """
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -28,16 +28,18 @@ import numpy as np
 from restitution.cases.case import Case
 from restitution.errors import Defect, InputError, StoppedError
 from restitution.files import write_folder, write_whole
+from restitution.locks import sole_writer
 from restitution.runs.flow_pictures import FlowFrames
 from restitution.runs.progress import RunProgress
-from restitution.runs.resolved import ResolvedRun
+from restitution.runs.resolved import ResolvedRun, owner_of
 from restitution.runs.results import results, trajectory_of
 from restitution.runs.validity import physics
 from restitution.runs.validity.key import checkpoint_key
 from restitution.tables.writing import table_text
 
 SECONDS_PER_CHECKPOINT = 30.0
-CHECKPOINT, IDENTITY, SO_FAR = "checkpoint.h5", "checkpoint.json", "trajectory_so_far.csv"
+CHECKPOINT, SO_FAR = "checkpoint.h5", "trajectory_so_far.csv"
+_SECONDS = "seconds"
 KEPT = ("trajectory.csv", "velocity.csv", "impacts.csv", "run.json", "flow.npz")
 
 
@@ -65,8 +67,9 @@ def simulate(
 
     Raises
     ------
-    InputError : for a case that cannot be run, or a checkpoint that is not its own.
-    StoppedError : for a run that diverges or cannot write. Ctrl-C is raised again once the checkpoint is written.
+    InputError : for a case that cannot be run, a checkpoint that is not its own, a folder another process has.
+    StoppedError : for a run that diverges, cannot write or never reaches the wall. Ctrl-C is raised again once the
+        checkpoint is written.
     """
     folder = Path(folder)
     run, key = ResolvedRun(case, file), checkpoint_key(case)
@@ -74,75 +77,92 @@ def simulate(
     say = show or (lambda _: None)
     for warning in run.warnings:
         say(f"warning: {warning}")
-    frames, spent = FlowFrames(), 0.0
-    if resume and (folder / CHECKPOINT).exists():
-        spent = _resume(run, key, frames, folder)
-        say(f"continues at t = {run.time_s:.4g} s")
-    else:
-        if resume:
-            say(f"{folder} has no checkpoint: starts anew")
-        (folder / CHECKPOINT).unlink(missing_ok=True)  # of a run that is given up
-    start = saved = time.perf_counter()
-    try:
-        write_folder(folder, {IDENTITY: json.dumps({"key": key, "seconds": spent})})
-        observers = (run.snapshots(folder),) if snapshots else ()
-        with RunProgress(case.name, run.cells, show is not None) as shown:
-            while not run.finished:
-                before = run.simulation.steps
-                run.advance(observers)
-                frames.look(run)
-                shown.update(run.simulation.steps - before, run.time_s, run.expected_s, run.gap_d)
-                if time.perf_counter() - saved > SECONDS_PER_CHECKPOINT:
-                    saved = time.perf_counter()
-                    _checkpoint(run, key, frames, folder, spent + saved - start)
-    except BaseException:
-        _leave(run, key, frames, folder, spent + time.perf_counter() - start)
-        raise
-    seconds = spent + time.perf_counter() - start
-    contents = results(run, frames, seconds)
-    if every_step:
-        contents["motion.csv"] = table_text(run.motion(), "%.7g")
-    write_folder(folder, contents)
-    for name in (CHECKPOINT, IDENTITY, SO_FAR):
-        (folder / name).unlink(missing_ok=True)
-
-
-def _checkpoint(run: ResolvedRun, key: str, frames: FlowFrames, folder: Path, seconds: float) -> None:
-    run.save(folder / CHECKPOINT)
-    state = {"key": key, "steps": run.simulation.steps, "seconds": round(seconds, 1)}
-    write_folder(folder, {IDENTITY: json.dumps(state), "flow.npz": frames.as_bytes()})
+    write_folder(folder, {})
+    with sole_writer(folder):
+        progress = _Stand(run, key, folder)
+        if resume and (folder / CHECKPOINT).exists():
+            progress.restore()
+            say(f"continues at t = {run.time_s:.4g} s")
+        else:
+            if resume:
+                say(f"{folder} has no checkpoint: starts anew")
+            (folder / CHECKPOINT).unlink(missing_ok=True)  # of a run that is given up
+        try:
+            observers = (run.snapshots(folder),) if snapshots else ()
+            with RunProgress(case.name, run.cells, show is not None) as shown:
+                while not run.finished:
+                    before = run.simulation.steps
+                    run.advance(observers)
+                    progress.frames.look(run)
+                    shown.update(run.simulation.steps - before, run.time_s, run.expected_s, run.gap_d)
+                    if time.perf_counter() - progress.saved > SECONDS_PER_CHECKPOINT:
+                        progress.save()
+            progress.save()  # whatever becomes of the tables, the run need not be made again
+            write_folder(folder, results(run, progress.frames, progress.seconds, every_step))
+        except BaseException:
+            progress.leave()
+            raise
+        for name in (CHECKPOINT, SO_FAR):
+            (folder / name).unlink(missing_ok=True)
+    if run.gave_up:
+        raise StoppedError(
+            f"the sphere did not reach the wall within {run.time_s:.3g} s, several times the fall at "
+            f"the reference speed; it is {run.gap_d:.3g} d above it. The tables in {folder} end there"
+        )
 
 
 def can_resume(folder: Path, case: Case) -> bool:
     """Whether the folder has a checkpoint of this very run."""
-    return (folder / CHECKPOINT).exists() and _identity(folder).get("key") == checkpoint_key(case)
+    return (folder / CHECKPOINT).exists() and owner_of(folder / CHECKPOINT) == checkpoint_key(case)
 
 
-def _identity(folder: Path) -> dict:
-    try:
-        return json.loads((folder / IDENTITY).read_text())
-    except (OSError, ValueError):
-        return {}  # without its description a checkpoint is nobody's
+class _Stand:
+    """How far a run has come: its state and pictures, and the seconds that it took, all in one checkpoint."""
 
+    def __init__(self, run: ResolvedRun, key: str, folder: Path):
+        self.run, self.key, self.folder = run, key, folder
+        self.frames = FlowFrames()
+        self._before = 0.0
+        self._began = self.saved = time.perf_counter()
+        self._saved_at = -1
 
-def _resume(run: ResolvedRun, key: str, frames: FlowFrames, folder: Path) -> float:
-    """Take up the checkpoint of the same run; returns the seconds it had taken."""
-    state = _identity(folder)
-    if state.get("key") != key:
-        rule = "is of another case or of another version of the code: leave --resume out to start anew"
-        raise InputError(Defect(rule, file=str(folder / CHECKPOINT)))
-    run.restore(folder / CHECKPOINT)
-    frames.read(folder / "flow.npz")
-    return float(state.get("seconds", 0.0))
+    @property
+    def seconds(self) -> float:
+        """What the run has taken so far, all processes together."""
+        return self._before + time.perf_counter() - self._began
 
+    def save(self) -> None:
+        """Write the checkpoint."""
+        self.saved = time.perf_counter()
+        if self.run.simulation.steps == self._saved_at:
+            return
+        beside = {_SECONDS: np.array([round(self.seconds, 1)]), **self.frames.arrays()}
+        self.run.save(self.folder / CHECKPOINT, self.key, beside)
+        self._saved_at = self.run.simulation.steps
 
-def _leave(run: ResolvedRun, key: str, frames: FlowFrames, folder: Path, seconds: float) -> None:
-    """What a stopped run leaves: trajectory so far and, where its state is sound, a checkpoint."""
-    if run.simulation.steps == 0:
-        return
-    with suppress(StoppedError, InputError):  # the last sound one stays
-        run.check()
-        _checkpoint(run, key, frames, folder, seconds)
-    table = trajectory_of(run)
-    with suppress(InputError):  # a full disk: the error that stopped the run is the one to show
-        write_whole(folder / SO_FAR, table_text(table[np.isfinite(table).all(axis=1)]))
+    def restore(self) -> None:
+        """Take up the checkpoint in the folder; raises :class:`InputError` for one of another run."""
+        path = self.folder / CHECKPOINT
+        if owner_of(path) not in (None, self.key):
+            rule = "is of another case or of another version of the code: leave --resume out to start anew"
+            raise InputError(Defect(rule, file=str(path)))
+        beside = self.run.restore(path, self.key)
+        try:
+            self._before = float(beside[_SECONDS][0])
+            self.frames.take(beside)
+            if self.run.is_due:  # stopped after the last step of a block, before it was looked at
+                self.frames.look(self.run)
+        except (KeyError, IndexError, ValueError, TypeError):
+            rule = "is damaged: the pictures of the flow are not those of a run; start anew"
+            raise InputError(Defect(rule, file=str(path))) from None
+
+    def leave(self) -> None:
+        """What a stopped run leaves: trajectory so far and, where its state is sound, a checkpoint."""
+        if self.run.simulation.steps == 0:
+            return
+        with suppress(StoppedError, InputError):  # the last sound one stays
+            self.run.check()
+            self.save()
+        table = trajectory_of(self.run)
+        with suppress(InputError):  # a full disk: the error that stopped the run is the one to show
+            write_whole(self.folder / SO_FAR, table_text(table[np.isfinite(table).all(axis=1)]))

@@ -7,16 +7,15 @@ from __future__ import annotations
 
 import codecs
 import csv
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from restitution.errors import Defect
+from restitution.errors import Defect, InputError
+from restitution.inputs import read_bytes
+from restitution.units import NUMBER
 
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
-# Python's float() would also take 1_000 and digits of other scripts.
-NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 
 
 @dataclass
@@ -34,13 +33,9 @@ class CsvText:
         """The text of a file; whatever keeps it from being read is a defect."""
         text = cls(path)
         try:
-            data = Path(path).read_bytes()
-        except FileNotFoundError:
-            text._defect("does not exist")
-        except IsADirectoryError:
-            text._defect("is a folder; a CSV file is needed")
-        except OSError as error:
-            text._defect(f"cannot be read: {error.strerror}")
+            data = read_bytes(path)
+        except InputError as error:
+            text.defects += error.defects
         else:
             if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
                 text._defect("is UTF-16 text; save it as UTF-8", 1)

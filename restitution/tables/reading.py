@@ -18,8 +18,9 @@ from pydantic import Field as PydanticField
 from pydantic_core import PydanticCustomError
 
 from restitution.errors import Defect, InputError
-from restitution.tables.csv_text import NUMBER, CsvText
+from restitution.tables.csv_text import CsvText
 from restitution.tables.schema import Field, Rules, Schema
+from restitution.units import NUMBER
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -215,12 +216,17 @@ def _column(f: Field, cells: list[str], scale: float) -> tuple[list, list[tuple[
     return values, list(wrong.items())
 
 
+LONGEST_TEXT = 500
+"""Characters of a cell: a longer one is no name of anything."""
+_Text = Annotated[str, PydanticField(max_length=LONGEST_TEXT)]
+
+
 @cache
 def _column_type(f: Field, scale: float) -> TypeAdapter:
     """The type of the filled cells of a column, made from the field's type and constraints."""
     c = f.constraints
     if f.type == "string":
-        return TypeAdapter(list[Literal[c.enum] if c.enum else str])  # type: ignore[misc]  # made at run time
+        return TypeAdapter(list[Literal[c.enum] if c.enum else _Text])  # type: ignore[misc]  # made at run time
 
     def number(cell: str) -> float | str:
         if not NUMBER.fullmatch(cell):
@@ -243,6 +249,7 @@ _RULES = {
     "greater_than_equal": "must be at least {ge:g}",
     "less_than": "must be less than {lt:g}",
     "less_than_equal": "must be at most {le:g}",
+    "string_too_long": "is longer than {max_length} characters",
     "literal_error": "must be one of {expected}",
 }
 

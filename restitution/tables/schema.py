@@ -6,15 +6,15 @@ between rows and between fields stand in its custom property ``restitution:rules
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Literal, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, ValidationError, model_validator
 from pydantic import Field as PydanticField
 
 from restitution.conditions import Record, defects_of
-from restitution.errors import Defect, InputError
+from restitution.errors import InputError
+from restitution.inputs import read_json
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -66,6 +66,21 @@ class Schema(Record):
     fields: tuple[Field, ...]
     rules: Rules = PydanticField(Rules(), alias="restitution:rules")
 
+    @model_validator(mode="after")
+    def _of_its_own_fields(self) -> Schema:
+        """Names stand once, and rules are about fields that there are."""
+        names = [f.name for f in self.fields]
+        repeated = sorted({name for name in names if names.count(name) > 1})
+        if repeated or not names:
+            raise ValueError(f"names a field twice: {', '.join(repeated)}" if names else "names no fields")
+        rules = self.rules
+        used = [*rules.strictly_increasing, *(name for group in rules.unique for name in group)]
+        used += [name for rule in rules.required_when for name in (rule.field, *rule.when)]
+        unknown = sorted(set(used) - set(names))
+        if unknown:
+            raise ValueError(f"has rules about {', '.join(unknown)}, which are no fields of it")
+        return self
+
     @property
     def columns(self) -> tuple[str, ...]:
         return tuple(f.name for f in self.fields)
@@ -78,13 +93,9 @@ class Schema(Record):
 def read_record(path: str | Path, model: type[Model]) -> Model:
     """A JSON file as a ``model``; raises :class:`InputError` naming every field that is wrong."""
     try:
-        return model.model_validate(json.loads(Path(path).read_bytes()))
-    except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
+        return model.model_validate(read_json(path))
     except ValidationError as error:
         raise InputError(*defects_of(error, str(path))) from None
-    except ValueError as error:
-        raise InputError(Defect(f"is not JSON: {error}", file=str(path))) from None
 
 
 def read_schema(path: str | Path) -> Schema:

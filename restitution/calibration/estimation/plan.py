@@ -53,11 +53,16 @@ class Plan:
         separate = dict(self.separate)
         for p in self.model.parameters:
             wanted = p.name in self.free or p.name in self.separate or p.name in self.priors
+            low, high = p.bounds
+            if p.name in self.fixed and not low <= self.fixed[p.name] <= high:
+                rule = f"lies outside the bounds of the law, [{low:g}, {high:g}]"
+                raise InputError(Defect(rule, field=p.name, value=f"{self.fixed[p.name]:g}"))
             if p.name in self.fixed or (p.name in self.model.chosen and not wanted):
                 fixed[p.name] = self.fixed.get(p.name, p.start)
             else:
                 parameters += _by_level(self._own(p), separate.get(p.name), observations)
         e_dry, value = self._e_dry(observations, separate)
+        self._check_separate(e_dry)
         if e_dry is None:
             fixed["e_dry"] = value
         else:
@@ -73,6 +78,14 @@ class Plan:
         likelihood = Likelihood(self.model, observations, tuple(parameters), fixed, separate, self.robust)
         check_data(likelihood)
         return likelihood
+
+    def _check_separate(self, e_dry: Parameter | None) -> None:
+        """Refuse levels of what is not estimated."""
+        if "e_dry" in self.separate and e_dry is None:
+            rule = "is not estimated but stated by the data or the caller: --e-dry free estimates it by levels"
+            raise InputError(Defect(rule, field="e_dry"))
+        for name in self.separate.keys() & self.fixed.keys():
+            raise InputError(Defect("is fixed: it cannot differ by levels", field=name))
 
     def _known_names(self) -> None:
         names = [p.name for p in self.model.parameters]

@@ -11,7 +11,6 @@ and get the error of a click: one pixel. The CSV export has values alone, so the
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -24,7 +23,8 @@ from restitution.errors import Defect, InputError
 from restitution.foreign.file_text import read_lines
 from restitution.foreign.layout import Layout, layout_of
 from restitution.foreign.number_text import Decimal, plain
-from restitution.tables.csv_text import NUMBER
+from restitution.inputs import read_json
+from restitution.units import NUMBER, UnitError, number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -90,7 +90,7 @@ def read_export(path: str | Path, axes: tuple[str, str], decimal: Decimal | None
 
 def bars_left_out(path: str | Path) -> int:
     """How many points of a project are ends of error bars, which are not taken: nobody states what they mean."""
-    project = _Project.model_validate(_of_version_4(json.loads(Path(path).read_bytes())))
+    project = _Project.model_validate(_of_version_4(read_json(path)))
     return sum(bool(p.group) for dataset in project.datasets for p in dataset.data)
 
 
@@ -116,14 +116,13 @@ def _read_csv(path: str | Path, axes: tuple[str, str], decimal: Decimal | None) 
             pair = cells[2 * k : 2 * k + 2]
             if not any(pair):
                 continue  # data sets of different length leave empty cells
-            for cell in pair:
-                if not NUMBER.fullmatch(cell):
-                    raise InputError(
-                        Defect("is not a number", file=str(path), row=row.line, field=name, value=cell)
-                    )
             columns["source"].append(name)
-            columns[axes[0]].append(float(pair[0]))
-            columns[axes[1]].append(float(pair[1]))
+            for axis, cell in zip(axes, pair, strict=True):
+                try:
+                    columns[axis].append(number(cell))
+                except UnitError as error:
+                    place = {"file": str(path), "row": row.line, "field": name}
+                    raise InputError(Defect(str(error), **place, value=cell)) from None
             lines.append(row.line)
     return pd.DataFrame(columns, index=pd.Index(lines, name="row"))
 
@@ -166,13 +165,9 @@ def _read_project(path: str | Path, axes: tuple[str, str]) -> pd.DataFrame:
     import pandas as pd
 
     try:
-        project = _Project.model_validate(_of_version_4(json.loads(Path(path).read_bytes())))
-    except OSError as error:
-        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
+        project = _Project.model_validate(_of_version_4(read_json(path)))
     except ValidationError as error:
         raise InputError(*defects_of(error, str(path))) from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(Defect(f"is not JSON: {error}", file=str(path))) from None
     known = {a.name: a for a in project.axes}
     parts = []
     for dataset in project.datasets:

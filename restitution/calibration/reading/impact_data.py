@@ -22,6 +22,7 @@ from restitution.calibration.reading.track_impacts import from_track, from_track
 from restitution.errors import Defect, InputError
 from restitution.foreign.table import read_foreign
 from restitution.foreign.track import is_track, what_is_needed
+from restitution.inputs import read_bytes
 from restitution.tables.reading import examine_table
 from restitution.tables.schema import read_schema
 
@@ -110,4 +111,4 @@ def _known_columns(given: Mapping[str, str]) -> None:
 
 
 def _digest(path: str) -> str:
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    return hashlib.sha256(read_bytes(path)).hexdigest()

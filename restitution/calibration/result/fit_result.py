@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from importlib import metadata
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -20,7 +19,6 @@ from restitution.calibration.result.residuals import Goodness, Point, goodness_o
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Record
 from restitution.stokes import H_FILM
-from restitution.tables.schema import read_record
 
 FORMAT = "restitution-fit/1"
 _LIBRARIES = ("restitution", "numpy", "scipy", "iminuit", "emcee")
@@ -166,11 +164,6 @@ class FitResult(Showing, Record):
     def to_json(self) -> str:
         """JSON text of standard numbers only: no NaN, no infinity."""
         return json.dumps(self.model_dump(mode="json"), indent=1, allow_nan=False) + "\n"
-
-
-def read_fit(path: str | Path) -> FitResult:
-    """The fit in a JSON file; raises :class:`InputError` naming what is wrong with it."""
-    return read_record(path, FitResult)
 
 
 MOST_DRAWS = 1000

@@ -35,6 +35,7 @@ from restitution.doubts import Doubt, cleaned, of_track
 from restitution.errors import Defect, InputError
 from restitution.foreign.table import read_foreign
 from restitution.foreign.track import is_track, what_is_needed
+from restitution.inputs import read_bytes
 from restitution.stokes import H_FILM
 from restitution.tracks import Track, begins_on_rebound, contacts
 
@@ -133,7 +134,7 @@ def read_recording(path: str, how: Reading) -> Recording:
         if not is_track(table, how.settings):
             raise InputError(what_is_needed(table))
         track, conditions, notes = track_of(table, how)
-        record = recording(path, track, conditions, hashlib.sha256(Path(path).read_bytes()).hexdigest())
+        record = recording(path, track, conditions, hashlib.sha256(read_bytes(path)).hexdigest())
         return replace(record, notes=(*(f"{path}: {note}" for note in notes), *record.notes))
     if path not in datasets.names():
         raise InputError(Defect("does not exist, and no shipped record has this name", file=path))

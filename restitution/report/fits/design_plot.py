@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from restitution.report.drawing import Drawing, save, stokes_axis, style
+from restitution.report.drawing import Drawing, as_text, save, stokes_axis, style
 
 if TYPE_CHECKING:
     from restitution.calibration.result.design import Design, Gain, Target
@@ -30,7 +30,7 @@ def draw(plan: Design, gains: list[Gain], shots: tuple[int, ...], target: Target
         stokes_axis(ax)
         ax.set_ylim(0, 1.02)
         ax.set_xlabel(f"Stokes number of the new impacts ({plan.result.stokes_convention}) [-]")
-        what = target.parameter or f"$e_{{eff}}$ at St {target.stokes:g}"
+        what = as_text(target.parameter) if target.parameter else f"$e_{{eff}}$ at St {target.stokes:g}"
         ax.set_ylabel(f"standard error of {what} after / now [-]")
         ax.legend(fontsize=8.5, loc="lower right")
         return save(figure)

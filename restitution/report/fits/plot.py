@@ -8,7 +8,7 @@ import numpy as np
 
 from restitution.calibration.result.fit_result import FitResult, sources
 from restitution.calibration.result.prediction import predict
-from restitution.report.drawing import Drawing, save, stokes_axis, style
+from restitution.report.drawing import Drawing, as_text, save, stokes_axis, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +57,7 @@ def _law(ax: Axes, result: FitResult) -> None:
         more, law = found.impact["95%"], found.law["95%"]
         ax.fill_between(St, *more.T, color="#e3e3e3", lw=0, label="95 % of single impacts" if first else None)
         ax.fill_between(St, *law.T, color="#b5b5b5", lw=0, label="95 % interval of the law" if first else None)
-        ax.plot(St, found.value, color="black", ls=dashes, label=f"fit {name}".rstrip())
+        ax.plot(St, found.value, color="black", ls=dashes, label=as_text(f"fit {name}".rstrip()))
 
 
 def _impacts(upper: Axes, lower: Axes, result: FitResult) -> None:
@@ -78,7 +78,7 @@ def _impacts(upper: Axes, lower: Axes, result: FitResult) -> None:
             "elinewidth": 0.8,
             "capsize": 2,
         }
-        label = name if 1 < len(names) <= MOST_NAMES else None
+        label = as_text(name) if 1 < len(names) <= MOST_NAMES else None
         x, sx = [p.stokes for p in seen], [p.stokes_sigma for p in seen]
         if seen:
             upper.errorbar(x, [p.e_eff for p in seen], [p.e_eff_sigma for p in seen], sx, label=label, **look)

@@ -18,11 +18,13 @@ def write(
     result: FitResult,
     template: str = "fit.html.j2",
     more: Mapping[str, str | bytes] | None = None,
+    out: str | None = None,
     **content: object,
 ) -> list[str]:
     """Write the report into ``folder``; returns the names of the files.
 
-    ``more`` are further files; ``content`` is what a ``template`` that extends the fit's own needs besides.
+    ``more`` are further files, ``out`` is a second place for the record itself; ``content`` is what a ``template``
+    that extends the fit's own needs besides.
     """
     from restitution.report.fits import plot
     from restitution.report.page import render
@@ -48,7 +50,7 @@ def write(
         **(more or {}),
         "index.html": page,
     }
-    write_folder(folder, files)
+    write_folder(folder, files, {} if out is None else {out: result.to_json()})
     return list(files)
 
 

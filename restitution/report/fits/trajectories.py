@@ -9,7 +9,7 @@ import numpy as np
 
 from restitution.calibration.trajectories.fit import closures_of
 from restitution.calibration.trajectories.whole_trajectories import band, distance_d
-from restitution.report.drawing import Drawing, save, style
+from restitution.report.drawing import Drawing, as_text, save, style
 from restitution.report.fits import report
 
 if TYPE_CHECKING:
@@ -25,14 +25,15 @@ _POINTS = 1200
 """Of a line over a record."""
 
 
-def write(folder: str | Path, fit: TrajectoryFit, result: FitResult) -> list[str]:
-    """Write the report into ``folder``; returns the names of the files."""
+def write(folder: str | Path, fit: TrajectoryFit, result: FitResult, out: str | None = None) -> list[str]:
+    """Write the report into ``folder``, the record to ``out`` as well; returns the names of the files."""
     drawing = draw(fit)
     return report.write(
         folder,
         result,
         "trajectory_fit.html.j2",
         {"trajectories.svg": drawing.svg, "trajectories.png": drawing.png},
+        out,
         trajectories=drawing.svg,
         slopes=_slopes(fit),
         seen=[f"{t.record}: rms {t.rms_d:.3f} d with its own restitutions" for t in result.trajectories],
@@ -66,11 +67,11 @@ def _record(upper: Axes, lower: Axes, fit: TrajectoryFit, t: WholeTrajectory) ->
     if r.clock_of == "contact":
         own = own - t.likelihood.model(t.mean).contacts[1] + path.impacts[0].time_s
     name = fit.fit.likelihood.model.name
-    law = {"color": "#0072B2", "ls": (0, (6, 2)), "lw": 1.2, "label": f"model, e by {name[:40]}"}
+    law = {"color": "#0072B2", "ls": (0, (6, 2)), "lw": 1.2, "label": as_text(f"model, e by {name}")}
     upper.plot(1e3 * time, path.gap(own) / d, **law)
     look = {"marker": "s", "ms": 3, "mfc": "white", "mec": "black", "ls": "none"}
     upper.plot(1e3 * r.time_s, r.gap_m / d, label="frames", **look)
-    upper.set_title(r.name, loc="left", fontsize=10)
+    upper.set_title(as_text(r.name), loc="left", fontsize=10)
     upper.set_ylabel("gap  $h/d$  [-]")
     upper.legend(fontsize=7.5, loc="upper right")
     upper.set_ylim(-0.04 * np.max(r.gap_m) / d, 1.35 * np.max(r.gap_m) / d)

@@ -13,7 +13,7 @@ from restitution.calibration.reading.digitizer import read_export
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.reading.reading import Reading
 from restitution.calibration.reading.track_impacts import from_track
-from restitution.calibration.result.fit_result import read_fit
+from restitution.calibration.result.fit_file import read_fit
 from restitution.cli import main
 from restitution.errors import InputError
 from restitution.impacts import find_impacts

@@ -15,7 +15,7 @@ from restitution.bounce.agreement import release_of
 from restitution.bounce.edges import restitution_at
 from restitution.calibration import Plan, model_of
 from restitution.calibration.reading.reading import Reading
-from restitution.calibration.result.fit_result import read_fit
+from restitution.calibration.result.fit_file import read_fit
 from restitution.calibration.trajectories.correlated_noise import gram_matrices
 from restitution.calibration.trajectories.fit import Measured, closures_of, fit_law, law_fit, observations
 from restitution.calibration.trajectories.flights import Flights

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 from restitution.calibration.result.design import candidates
-from restitution.calibration.result.fit_result import read_fit
+from restitution.calibration.result.fit_file import read_fit
 from restitution.cli import main
 from tests.fits import K
 

@@ -1,0 +1,121 @@
+"""Files of users, read whole within bounds: a file, no device, of no more bytes than are sensible; JSON and TOML.
+
+Both are read more strictly than their parsers do: keys stand once, numbers are finite and of a sensible length,
+nesting ends. Whatever is wrong is one :class:`~restitution.errors.Defect` that names the file.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import stat
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from restitution.errors import Defect, InputError
+
+MOST_TABLE, MOST_JSON, MOST_TOML = 2**28, 2**25, 2**16
+"""Bytes of a table or track, of a JSON file, of a TOML file."""
+LONGEST_TOML_LINE = 2000
+"""Bytes: the time for a key of n parts grows with n squared."""
+MOST_DIGITS = 300
+"""Of a whole number, so that it is one of floating point as well."""
+_CHUNK = 2**20
+
+
+def read_bytes(path: str | Path, most: int = MOST_TABLE) -> bytes:
+    """The content of a file or pipe; raises :class:`InputError` where there is none, or more than ``most`` bytes.
+
+    A pipe can be emptied once only, so what came out of one is kept for those that ask again.
+    """
+    try:
+        about = Path(path).stat()
+        if stat.S_ISFIFO(about.st_mode):
+            return _emptied(str(path), about.st_ino, most)
+        if stat.S_ISREG(about.st_mode):
+            return _read(path, most)
+    except FileNotFoundError:
+        raise InputError(Defect("does not exist", file=str(path))) from None
+    except OSError as error:
+        raise InputError(Defect(f"cannot be read: {error.strerror}", file=str(path))) from None
+    except ValueError as error:  # a NUL in the name
+        if isinstance(error, InputError):
+            raise
+        raise InputError(Defect(f"cannot be read: {error}", file=str(path))) from None
+    what = "a folder" if stat.S_ISDIR(about.st_mode) else "a device or socket"
+    raise InputError(Defect(f"is {what}; a file is needed", file=str(path)))
+
+
+@cache
+def _emptied(path: str, _which: int, most: int) -> bytes:
+    return _read(path, most)
+
+
+def _read(path: str | Path, most: int) -> bytes:
+    parts, size = [], 0
+    with Path(path).open("rb") as stream:
+        while size <= most and (part := stream.read(min(_CHUNK, most + 1 - size))):
+            parts.append(part)
+            size += len(part)
+    if size > most:
+        rule = f"is larger than {_size(most)}, the most that is read of such a file"
+        raise InputError(Defect(rule, file=str(path)))
+    return b"".join(parts)
+
+
+def read_json(path: str | Path) -> Any:
+    """What a JSON file says; raises :class:`InputError` where it is none, or says anything twice."""
+    content = read_bytes(path, MOST_JSON)
+    try:
+        return json.loads(
+            content, parse_int=_integer, parse_float=_number, parse_constant=_number, object_pairs_hook=_once
+        )
+    except RecursionError:
+        raise InputError(Defect("is not JSON that is read here: nested too deep", file=str(path))) from None
+    except ValueError as error:
+        raise InputError(Defect(f"is not JSON: {error}", file=str(path))) from None
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """The content of a TOML file; raises :class:`InputError` where it cannot be read as such."""
+    content, file = read_bytes(path, MOST_TOML), str(path)
+    for row, line in enumerate(content.splitlines(), 1):
+        if len(line) > LONGEST_TOML_LINE:
+            rule = f"is a line of {len(line)} bytes; at most {LONGEST_TOML_LINE} are read"
+            raise InputError(Defect(rule, file=file, row=row))
+    try:
+        return tomllib.loads(content.decode("utf-8-sig").replace("\r\n", "\n"))
+    except UnicodeDecodeError as error:
+        raise InputError(Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", file=file)) from None
+    except RecursionError:
+        raise InputError(Defect("is not TOML that is read here: nested too deep", file=file)) from None
+    except ValueError as error:  # of which tomllib's own is one
+        raise InputError(Defect(f"is not TOML: {error}", file=file)) from None
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise ValueError(f"the key {key!r} stands twice in one object")
+        found[key] = value
+    return found
+
+
+def _integer(text: str) -> int:
+    if len(text) > MOST_DIGITS:
+        raise ValueError(f"a number of {len(text)} digits")
+    return int(text)
+
+
+def _number(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is no finite number")
+    return value
+
+
+def _size(count: int) -> str:
+    return f"{count // 2**20} MiB" if count >= 2**20 else f"{count // 2**10} KiB"
