@@ -137,7 +137,9 @@ def points(tau: NDArray, value: NDArray, sigma: float, rebound: bool) -> Points:
     moments = tau[:, None] ** np.arange(_COEFFICIENTS)
     if len(tau) > MOST_SINGLE:
         runs = np.flatnonzero(np.diff(value, prepend=np.nan) != 0)
-        if 2 * len(runs) < len(tau):  # on a grid of pixels: frames that show the same one say it once
+        if (
+            _COEFFICIENTS < len(runs) < len(tau) / 2
+        ):  # on a grid of pixels: frames that show the same one say it once
             moments, value = _means(moments, runs), value[runs]
     N = len(value)
     begins = np.arange(N)
