@@ -139,7 +139,7 @@ def _pace(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
         expected, slow, quick = g * (1 - coming.mean_speed / terminal), SLOW_AT_FIRST, FAST_AT_FIRST
         if coming.error < 0.2 * expected:
             share = max(coming.acceleration, coming.error) / expected
-    if share < slow or share > quick:
+    if share > 0 and not slow <= share <= quick:
         return [_clock(share, g)]
     if fast > BEYOND * terminal:
         return [_too_fast(fast, terminal, conditions)]

@@ -134,15 +134,27 @@ def points(tau: NDArray, value: NDArray, sigma: float, rebound: bool) -> Points:
     All frames of a long branch take part. Were they points of their own, the penalty for leaving frames out would
     outweigh what is near the contact.
     """
-    N, powers = len(tau), np.arange(_COEFFICIENTS)
+    moments = tau[:, None] ** np.arange(_COEFFICIENTS)
+    if len(tau) > MOST_SINGLE:
+        runs = np.flatnonzero(np.diff(value, prepend=np.nan) != 0)
+        if (
+            _COEFFICIENTS < len(runs) < len(tau) / 2
+        ):  # on a grid of pixels: frames that show the same one say it once
+            moments, value = _means(moments, runs), value[runs]
+    N = len(value)
     begins = np.arange(N)
     if N > MOST_SINGLE:
         single, means = _REBOUND_POINTS if rebound else _APPROACH_POINTS
         farther = np.rint(np.geomspace(single, N, means + 1)).astype(int)[:-1]
         begins = np.unique(np.concatenate([np.arange(single), farther]))
     n = np.diff(np.append(begins, N))
-    moments = np.add.reduceat(tau[:, None] ** powers, begins, axis=0) / n[:, None]
-    return Points(moments, np.add.reduceat(value, begins) / n, sigma / np.sqrt(n))
+    return Points(_means(moments, begins), _means(value, begins), sigma / np.sqrt(n))
+
+
+def _means(values: NDArray, begins: NDArray) -> NDArray:
+    """Means of ``values`` along their first axis, from each of ``begins`` to the next."""
+    n = np.diff(np.append(begins, len(values)))
+    return np.add.reduceat(values, begins, axis=0) / n.reshape(-1, *[1] * (values.ndim - 1))
 
 
 def average(branch: Points, quantity: str, prior: Prior, rebound: bool) -> Branch:

@@ -250,3 +250,21 @@ def test_the_table_obeys_the_impact_schema(tmp_path):
     path = tmp_path / "impacts.csv"
     shipped("li2012_drop2", "contact").table().to_csv(path, index=False)
     assert check_table(path, datasets.schema("impact")) == []
+
+
+@pytest.mark.parametrize("fps", [2000.0, 5000.0, 20000.0])
+def test_a_grid_of_pixels_gives_values_at_any_frame_rate(fps):
+    """Many frames show the same pixel, those of a low bounce all of them: a value or a note, never nothing."""
+    grid, held, seen = 1e-4, 0, 0
+    for seed in range(6):
+        rng = np.random.default_rng([int(fps), seed])
+        flights, truths = fly(9e-3, -0.3, (0.75, 0.6), 0.6)
+        times = np.arange(rng.uniform(0, 1 / fps), flights[-1].end, 1 / fps)
+        gap = grid * np.round((film(flights, times)[0] + 1e-5 * rng.standard_normal(len(times))) / grid)
+        found = find_impacts(as_track(times, gap), STEEL_IN_OIL, "far")
+        assert found.doubts == []
+        first = found.rows[0]
+        seen += first["outcome"] == "rebound"
+        held += abs(first["impact_speed_m_s"] - truths[0].v_in) < 3 * first["impact_speed_sigma_m_s"]
+    assert seen == 6
+    assert held >= 5
