@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import warnings
 from collections.abc import Sequence
@@ -22,7 +23,7 @@ from restitution.commands import (
     report,
     simulate,
 )
-from restitution.errors import InputError, OutOfRangeWarning, first_of, printable
+from restitution.errors import Defect, InputError, OutOfRangeWarning, first_of, printable
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -49,6 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(args: argparse.Namespace) -> int:
     try:
+        _check_threads()
         status = args.run(args) or 0
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -61,13 +63,23 @@ def _run(args: argparse.Namespace) -> int:
         sys.stderr.close()  # the reader left (`| head`): no message about flushing
         return 0
     except OSError as error:
-        # Files are read and written with their own errors; what is left is the standard output.
+        # Files are read and written with their own errors; what is left is a name that is none, or the output.
+        if error.filename is not None:
+            print(f"error: {Defect(str(error.strerror), file=str(error.filename))}", file=sys.stderr)  # noqa: T201
+            return 2
         print(f"error: the output cannot be written: {error.strerror or error}", file=sys.stderr)  # noqa: T201
         sys.stdout = None  # nothing more to flush at exit
         return 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)  # noqa: T201
         return 130
+
+
+def _check_threads() -> None:
+    """Refuse a number of threads that numba would stop at, wherever it is imported first."""
+    given = os.environ.get("NUMBA_NUM_THREADS")
+    if given is not None and not (given.strip().isdecimal() and int(given) > 0):
+        raise InputError(Defect("must be a positive number of threads", field="NUMBA_NUM_THREADS", value=given))
 
 
 def _show_warning(message: Warning | str, *_: object) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -84,7 +84,7 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
     """
     aside: list[tuple[str, Path, Path]] = []
     with ExitStack() as streams:
-        streams.callback(lambda: [temporary.unlink(missing_ok=True) for _, temporary, _ in aside])
+        streams.callback(_remove, aside)
         for name, (target, content) in contents.items():
             if target.is_dir():
                 raise InputError(Defect("cannot be written: it is a folder", file=name))
@@ -104,6 +104,11 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
                 temporary.replace(target)
             except OSError as error:
                 raise _defect(error, name) from None
+
+
+def _remove(aside: Sequence[tuple[str, Path, Path]]) -> None:
+    for _, temporary, _ in aside:
+        temporary.unlink(missing_ok=True)
 
 
 def _remove_stale(target: Path) -> None:

@@ -130,14 +130,14 @@ class _Opened:
 
     def __init__(self, path: Path | str):
         self.path = arguments.path("checkpoint", path)
-        self.file = None
+        self.file: h5py.File | None = None
 
     def __enter__(self) -> h5py.File:
         try:
-            self.file = h5py.File(self.path, "r")
-            if self.file.attrs.get("format") != FORMAT:
+            self.file = file = h5py.File(self.path, "r")
+            if file.attrs.get("format") != FORMAT:
                 raise InputError(f"{self.path}: not an lbm checkpoint")
-            if (version := self.file.attrs["version"]) != VERSION:
+            if (version := file.attrs["version"]) != VERSION:
                 raise InputError(
                     f"{self.path}: checkpoint of version {version}, this program reads {VERSION}; "
                     "start anew or use the program that wrote it"
@@ -145,7 +145,7 @@ class _Opened:
         except BaseException as error:
             self.__exit__(type(error), error, None)
             raise
-        return self.file
+        return file
 
     def __exit__(self, _kind, error, _trace) -> None:
         if self.file is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from restitution import laws
@@ -10,6 +11,8 @@ from restitution.errors import Defect, InputError
 
 FEWEST_CELLS = 6.0
 """Cells a diameter below which the surface of a sphere is no sphere any more."""
+_SMALL = 1e-4
+"""Speed over the terminal one of Stokes, below which a series is more exact than a logarithm."""
 HEADROOM_D = 1.0
 """Least distance between sphere and top of the box, in diameters."""
 
@@ -201,16 +204,27 @@ def _box(case: Case) -> Iterator[Finding]:
         yield "release.gap_d", f"{gap:g}", rule
     needed = rebound_height_d(case) + 1 + HEADROOM_D
     if needed > n.height_d:
-        rule = f"cannot hold the rebound, which without drag reaches {needed:.1f} d with room above: raise it"
+        reach = f"which under the drag of Stokes reaches {needed:.1f} d with room above"
+        rule = f"cannot hold the rebound, {reach}: raise it"
         yield "numerics.height_d", f"{n.height_d:g}", rule
 
 
 def rebound_height_d(case: Case) -> float:
-    """Gap in diameters to which the first rebound could rise without drag, (e v)^2 / (2 g_eff)."""
+    """Gap in diameters to which the first rebound could rise at most.
+
+    It starts with e times the speed v of the drive, or of the fall without drag. Against weight and the drag of
+    Stokes, the least there is, a speed u rises by u tau - g tau^2 ln(1 + u/(g tau)), tau = (rho_p + rho_f/2)
+    d^2/(18 mu), g the free-fall acceleration; for large tau that is u^2/(2 g).
+    """
     c, d = case.contact, case.sphere.diameter
     if c is None:
         return 0.0
     e = max(c.measured) if isinstance(c.measured, tuple) else case.sphere.e_dry or 1.0
-    fall = case.conditions.free_fall
-    square = case.release.speed**2 if case.release.speed is not None else 2 * fall * case.release.gap_d * d
-    return e**2 * square / (2 * fall) / d if fall > 0 else 0.0
+    fall, fluid = case.conditions.free_fall, case.fluid
+    if fall <= 0:
+        return 0.0
+    u = e * (math.sqrt(2 * fall * case.release.gap_d * d) if case.release.speed is None else case.release.speed)
+    slowing = fall * (case.sphere.density + 0.5 * fluid.density) * d**2 / (18 * fluid.viscosity)
+    x = u / slowing
+    rise = 0.5 - x / 3 if x < _SMALL else (x - math.log1p(x)) / x**2
+    return u**2 * rise / fall / d

@@ -51,13 +51,15 @@ def run(args: argparse.Namespace) -> None:
     from restitution.calibration.result.fit_summary import describe
     from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
-    from restitution.files import write_whole
+    from restitution.files import check_folder, write_whole
 
     if not args.data:
         raise InputError("name the data: CSV files or shipped records (--template FOLDER writes an example)")
     options.check_output("--out", args.out, args.data)
     if args.report == "":
         raise InputError(Defect("names no folder", field="--report"))
+    if args.report is not None:
+        check_folder(args.report)
     if args.trajectory:
         fit_trajectory.run(args)
         return

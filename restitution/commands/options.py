@@ -86,20 +86,22 @@ def settings_of(args: argparse.Namespace) -> Settings:
 def _wall(text: str) -> float | str:
     if text == "rest":
         return text
+    from restitution.units import UnitError
+    from restitution.units import number as finite
+
     try:
-        return number(text)
-    except argparse.ArgumentTypeError:
+        return finite(text)
+    except UnitError:
         raise argparse.ArgumentTypeError(f"{text!r} is neither a number nor 'rest'") from None
 
 
 def number(text: str) -> float:
-    """A finite number as an argument type, of the same form as in tables."""
-    from restitution import units
+    """A number as an argument type, of the same form as in tables; what is not finite is refused by its option."""
+    from restitution.units import NUMBER
 
-    try:
-        return units.number(text)
-    except units.UnitError as error:
-        raise argparse.ArgumentTypeError(f"{text!r} {error}") from None
+    if not NUMBER.fullmatch(text.strip()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return float(text)
 
 
 def whole(text: str) -> int:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from restitution.commands.console import show, show_rows
 from restitution.errors import Defect, InputError
+from restitution.files import check_folder
 from restitution.runs.record import SolverContact, model_in
 
 _SHOWN = 12
@@ -19,6 +20,7 @@ def folder_for(given: str | None, default: str, model: str) -> Path:
     folder = Path(given or default)
     if folder.exists() and not folder.is_dir():
         raise InputError(Defect("is no folder", file=str(folder), field="--out"))
+    check_folder(folder)
     other = model_in(folder)
     if other not in (None, model):
         raise InputError(

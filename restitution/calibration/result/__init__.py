@@ -1,5 +1,5 @@
 """What is kept of a fit, and what it is good for.
 
-Read :mod:`.fit_result`, :mod:`.residuals` and :mod:`.fit_summary` (the fit), :mod:`.fitted_law` (as a law),
+Read :mod:`.fit_result`, :mod:`.fit_file`, :mod:`.residuals`, :mod:`.fit_summary` (the fit), :mod:`.fitted_law`,
 :mod:`.prediction`, :mod:`.ranking`, and :mod:`.design` with :mod:`.release` (what to measure next).
 """

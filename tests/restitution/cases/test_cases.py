@@ -91,9 +91,25 @@ def test_release_gap_is_the_one_the_record_states():
     assert case.release.gap_d * case.sphere.diameter == pytest.approx(15.2e-3, rel=1e-5)
 
 
-def test_height_of_a_rebound_without_drag(tmp_path):
-    """(0.97 x 0.585)^2 / (2 x 9.81 (7800 - 935)/(7800 + 935/2)), by hand 19.77 mm."""
-    assert rebound_height_d(read(tmp_path, GOOD)) * 3 == pytest.approx(19.77, abs=0.01)
+@pytest.mark.parametrize(("density", "viscosity"), [(7800, 0.01), (7800, 1e-7), (945, 0.01)])
+def test_height_of_a_rebound_against_weight_and_the_drag_of_stokes(tmp_path, density, viscosity):
+    """Step by step: m dv/dt = -(weight less buoyancy) - 3 pi mu d v, m with added mass. Without drag 19.77 mm."""
+    case = read(
+        tmp_path,
+        GOOD.replace("density = 7800", f"density = {density}")
+        .replace("viscosity = 0.01", f"viscosity = {viscosity}")
+        .replace("height_d", "width_d")
+        .replace("cells_per_diameter = 10", "cells_per_diameter = 10\nheight_d = 60"),
+    )
+    v, height, dt = 0.97 * 0.585, 0.0, 1e-6
+    mass, weight, drag = density + 935 / 2, (density - 935) * 9.81, 18 * viscosity / 0.003**2
+    while v > 0:
+        middle = v - dt / 2 * (weight + drag * v) / mass
+        height += dt * middle
+        v -= dt * (weight + drag * middle) / mass
+    assert rebound_height_d(case) * 0.003 == pytest.approx(height, rel=1e-4)
+    if viscosity < 1e-6:
+        assert height == pytest.approx(0.01977, rel=1e-3)
 
 
 BAD = {
@@ -112,7 +128,7 @@ BAD = {
     ),
     "box too low for the rebound": (
         "cells_per_diameter = 10",
-        "cells_per_diameter = 10\nheight_d = 8",
+        "cells_per_diameter = 10\nheight_d = 7",
         "numerics.height_d",
     ),
     "box too narrow": ("cells_per_diameter = 10", "cells_per_diameter = 10\nwidth_d = 1.5", "numerics.width_d"),

@@ -157,3 +157,25 @@ def test_no_value_of_a_digitized_plot_is_dropped(what, here, capsys):
     (here / "plot.csv").write_text(DIGITIZED[what])
     lines = refused(capsys, "fit", "plot.csv", *LAW, "--stokes", "st", "--speed", "far", "--e-dry", "0.97")
     assert lines[0].startswith("error: plot.csv:")
+
+
+@pytest.mark.parametrize("threads", ["0", "-1", "many", ""])
+def test_a_number_of_threads_that_is_none_is_named(threads, here, capsys, monkeypatch):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", threads)
+    assert "NUMBA_NUM_THREADS" in refused(capsys, "simulate", "gondret_st27")[0]
+
+
+def test_a_name_too_long_is_said_of_the_input(here, capsys):
+    (here / "conditions.toml").write_text(FLUID)
+    line = refused(capsys, "impacts", "x" * 300, "--conditions", "conditions.toml")[0]
+    assert line.startswith("error: xxx")
+    assert "output" not in line
+
+
+@pytest.mark.parametrize(
+    "command", [["fit", "impacts.csv", *LAW, "--report"], ["bounce", "gondret_st27", "--out"]]
+)
+def test_a_place_under_a_file_is_found_before_the_work(command, here, capsys, monkeypatch):
+    monkeypatch.setattr("restitution.calibration.estimation.fitting.estimate", None)
+    monkeypatch.setattr("restitution.runs.point_particle.predict", None)
+    assert "impacts.csv" in refused(capsys, *command, "impacts.csv/r")[0]

@@ -149,7 +149,7 @@ def stopped(case, whole, tmp_path_factory):
     """A folder with the checkpoint of a run that was stopped after its first contact."""
     folder = tmp_path_factory.mktemp("stopped")
     with pytest.raises(KeyboardInterrupt):
-        stop_at(contact_step(whole) + 30, lambda: signal.raise_signal(signal.SIGINT), case, folder)
+        stop_at(contact_step(whole) + 15, lambda: signal.raise_signal(signal.SIGINT), case, folder)
     return folder
 
 
@@ -231,8 +231,8 @@ def test_two_processes_do_not_write_to_one_folder(case, tmp_path):
 def test_a_sphere_that_never_arrives_is_not_a_finished_run(tmp_path):
     path = tmp_path / "slow.toml"
     path.write_text(CASE.replace('kind = "drive"', 'kind = "rest"').replace("speed = 0.3\nramp = 0.0005\n", "")
-                    .replace("lattice_speed = 0.1", "lattice_speed = 0.1\nreference_speed = 3.0")
-                    + "[fluid]\nviscosity = 1.0\n")  # fmt: skip
+                    .replace("lattice_speed = 0.1", "lattice_speed = 0.1\nreference_speed = 0.3")
+                    + "[fluid]\nviscosity = 5.0\n")  # fmt: skip
     with pytest.raises(StoppedError, match="did not reach the wall"):
         simulate.simulate(cases.read_case(path), tmp_path / "out")
     with pytest.raises(InputError, match="did not finish"):
