@@ -61,7 +61,7 @@ def test_wall_of_a_channel_stays_in_its_place_where_bulk_rates_move_it(axis):
         flow.run(round(0.3 * n * n / nu))
         profile = np.moveaxis(flow.velocity[1], axis, 2)[0, 0]
         slip[name] = abs(profile[0] - exact[0]) / exact[0]
-    assert slip["two"] < 1e-6
+    assert slip["two"] < 1e-4
     assert slip["by place"] < 0.1 * slip["bulk"]
 
 
