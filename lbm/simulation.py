@@ -73,7 +73,8 @@ class Simulation(Flow):
         self.threads = arguments.threads(threads, math.prod(self.shape))
         self._face_passes = passes.passes(self.faces, self.lattice.grid)
         walls = [isinstance(face, NoSlip) for face in self.faces]
-        self._places = places(rates.layers(), walls, self.shape, self.dtype)
+        table = np.array([layer.scaled(self.dtype) for layer in rates.layers()], self.dtype)
+        self._places = places(table, walls, self.shape)
 
     def compile(self) -> float:
         """Compile, or load from the cache, the kernels this simulation needs; seconds taken."""
