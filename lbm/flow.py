@@ -80,6 +80,7 @@ class Flow:
             raise arguments.too_large(self._shape, self._dtype.itemsize) from None
         self._bodies: tuple[Body, ...] = ()
         self._steps = 0
+        self.warned_of_grid_reynolds = False
         self._running = self._half_done = False
         self._saw_start: list = []  # observers that have been shown this flow at its start
         if any(self._force_at(0.0) or ()):

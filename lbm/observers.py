@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from lbm import arguments
-from lbm.errors import DivergenceError, InputError
+from lbm.errors import DivergenceError, InputError, OutsideRangeWarning
 from lbm.faces.records import AXES
 from lbm.flow import Flow
 from lbm.fluid import fields
@@ -56,6 +57,9 @@ _STABLE = 0.51
 class DivergenceGuard:
     """Stops a run whose density or speed goes out of range or is NaN.
 
+    It also warns, once a flow, of a grid Reynolds number (speed times cell over viscosity) beyond that at which
+    the flow's rates were shown to be stable.
+
     Parameters
     ----------
     every : steps from one check to the next.
@@ -79,6 +83,7 @@ class DivergenceGuard:
         sums = fields.plane_sums(flow.lattice, flow.force, self.density, self.top_speed)
         outside = sums[:, fields.SUMS.index("outside")]
         if not outside.any():
+            _warn_of_grid_reynolds(flow, math.sqrt(sums[:, fields.SUMS.index("top_speed_squared")].max()))
             return
         rho, u = flow.fields()
         speed = np.sqrt(np.sum(u.astype(float) ** 2, axis=0))
@@ -98,6 +103,21 @@ class DivergenceGuard:
                 if (tau := 0.5 + 3 * flow.rates.viscosity) < _STABLE
                 else ", or a lower lattice speed"
             ),
+        )
+
+
+def _warn_of_grid_reynolds(flow: Flow, speed: float) -> None:
+    shown, found = flow.rates.grid_reynolds, speed / flow.rates.viscosity
+    if found > shown and not flow.warned_of_grid_reynolds:
+        flow.warned_of_grid_reynolds = True
+        quiet = flow.rates.quiet(flow.rates.viscosity)
+        better = f" or {type(quiet).__name__}.quiet" if quiet.grid_reynolds > shown else ""
+        warnings.warn(
+            f"grid Reynolds number {found:.3g} by step {flow.steps} (speed {speed:.3g}, viscosity "
+            f"{flow.rates.viscosity:.3g}): with these rates flows were shown to be stable up to {shown:g}; "
+            f"take more cells{better}",
+            OutsideRangeWarning,
+            stacklevel=4,
         )
 
 

@@ -20,6 +20,9 @@ __all__ = ["PRESETS", "Rates"]
 _FINER = "raise the viscosity in lattice units (more cells or a higher lattice speed)"
 _COARSER = "lower the viscosity in lattice units (fewer cells or a lower lattice speed)"
 
+_FAST = 0.3
+"""Slowest s_m with which flows of high grid Reynolds number were shown to be stable."""
+
 
 def _rate(viscosity: float, factor: float, name: str) -> float:
     rate = 1.0 / (arguments.positive(f"{name} in lattice units", viscosity) / factor + 0.5)
@@ -121,6 +124,15 @@ class Rates:
     def bulk_viscosity(self) -> float:
         """Kinematic bulk viscosity in lattice units."""
         return (1 / self.e - 0.5) * 2 / 9
+
+    @property
+    def grid_reynolds(self) -> float:
+        """Largest speed times cell over viscosity up to which flows were shown to be stable.
+
+        Where s_m is 0.3 or more, 53: a Taylor-Green vortex of Re 400 on 48^3 cells starts at 52.4. With slower m
+        flows are noisy, or diverge, from about 10 on (benchmarks/README.md).
+        """
+        return 53.0 if self.m >= _FAST else 10.0
 
     def layers(self) -> tuple[Rates, ...]:
         """Rates by layer of cells from a wall, of which this is the only one; see :class:`lbm.RatesByPlace`."""

@@ -73,6 +73,11 @@ class RatesByPlace:
         """Kinematic bulk viscosity in lattice units, away from walls."""
         return self.bulk.bulk_viscosity
 
+    @property
+    def grid_reynolds(self) -> float:
+        """That of the bulk; see :attr:`Rates.grid_reynolds`."""
+        return self.bulk.grid_reynolds
+
     def layers(self) -> tuple[Rates, ...]:
         """Rates of the first, second, ... layer of cells from a wall; the last ones are those of all others."""
         shares = [0.0] * self.reach + [n / (self.blend + 1) for n in range(1, self.blend + 1)]

@@ -73,8 +73,8 @@ class Simulation(Flow):
         self.threads = arguments.threads(threads, math.prod(self.shape))
         self._face_passes = passes.passes(self.faces, self.lattice.grid)
         walls = [isinstance(face, NoSlip) for face in self.faces]
-        layers = [layer.scaled(self.dtype) for layer in rates.layers()]
-        self._places = places(layers, walls, self.shape, self.dtype)
+        table = np.array([layer.scaled(self.dtype) for layer in rates.layers()], self.dtype)
+        self._places = places(table, walls, self.shape)
         self._planes = np.arange(self.shape[2])
 
     def compile(self) -> float:

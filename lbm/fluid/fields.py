@@ -12,7 +12,7 @@ from lbm.fluid.stencil import C, Q, W
 
 __all__ = ["SUMS", "plane_sums", "read", "read_cell", "sent_density", "with_image", "write"]
 
-SUMS = ("mass", "momentum_x", "momentum_y", "momentum_z", "kinetic_energy", "outside")
+SUMS = ("mass", "momentum_x", "momentum_y", "momentum_z", "kinetic_energy", "outside", "top_speed_squared")
 
 
 @njit(forceinline=True)
@@ -61,7 +61,7 @@ def _sum_planes(populations, grid, rows, parity, half_force, low, high, top_spee
     # Each plane in float64 and in fixed order, so that the result does not depend on the threads.
     for plane in prange(grid.nz):
         z = np.int64(plane)
-        mass = px = py = pz = energy = outside = 0.0
+        mass = px = py = pz = energy = outside = top = 0.0
         for y in range(grid.ny):
             starts = row_starts(grid, rows, parity, y, z)
             lend(populations, grid, rows, parity, y, z)
@@ -78,8 +78,9 @@ def _sum_planes(populations, grid, rows, parity, half_force, low, high, top_spee
                 # written so that NaN counts as outside
                 inside = low <= rho and rho <= high and qq <= top_speed * top_speed * rho * rho
                 outside += 0.0 if inside else 1.0
+                top = max(top, qq / (rho * rho))
         sums[z, 0], sums[z, 1], sums[z, 2], sums[z, 3] = mass, px, py, pz
-        sums[z, 4], sums[z, 5] = energy, outside
+        sums[z, 4], sums[z, 5], sums[z, 6] = energy, outside, top
 
 
 def read(lattice: Lattice, force=None) -> tuple[np.ndarray, np.ndarray]:
@@ -102,7 +103,10 @@ def with_image(field: np.ndarray, axis: int) -> np.ndarray:
 
 
 def plane_sums(lattice: Lattice, force=None, density=(0.0, np.inf), top_speed=np.inf) -> np.ndarray:
-    """Per plane z the sums :data:`SUMS` of rho - 1, momentum, kinetic energy, and cells out of bounds."""
+    """Per plane z the sums :data:`SUMS` of rho - 1, momentum, kinetic energy, and cells out of bounds.
+
+    The last entry is no sum but the largest square of the speed in the plane.
+    """
     sums = np.empty((lattice.grid.nz, len(SUMS)))
     low, high = float(density[0]), float(density[1])
     _sum_planes(

@@ -36,14 +36,16 @@ class Places(NamedTuple):
     last: int
 
 
-def places(layers: Sequence[tuple], walls: Sequence[bool], shape: tuple[int, int, int], dtype) -> Places:
-    """Scaled rates of ``layers``, counted from the faces x-, ..., z+ that are ``walls``, the last beyond."""
-    dtype, farthest = np.dtype(dtype), len(layers) - 1
-    table = np.array(layers, dtype)
+def places(table: np.ndarray, walls: Sequence[bool], shape: tuple[int, int, int]) -> Places:
+    """Scaled rates by layer, (layers, 18), counted from the faces x-, x+, ..., z+ that are ``walls``.
+
+    The last ones are for all cells beyond.
+    """
+    farthest = len(table) - 1
     x, y, z = (_layer(n, walls[2 * axis : 2 * axis + 2], farthest) for axis, n in enumerate(shape))
     rows = np.minimum(z[:, None], y[None, :]).astype(np.uint8)
-    along = table[np.minimum(np.arange(len(layers))[:, None], x[None, :])]  # (layers, nx, factors)
-    line, nx = _LINE // dtype.itemsize, shape[0]
+    along = table[np.minimum(np.arange(len(table))[:, None], x[None, :])]  # (layers, nx, factors)
+    line, nx = _LINE // table.itemsize, shape[0]
     first = min(-(-farthest // line) * line, nx // line * line) if walls[0] else 0
     last = max(first, (nx - farthest if walls[1] else nx) // line * line)
     return Places(table, rows, np.ascontiguousarray(along.transpose(0, 2, 1)).ravel(), first, last)

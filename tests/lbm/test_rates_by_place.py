@@ -1,0 +1,95 @@
+"""Rates by place against flows whose answer is known: quiet in the bulk, walls where they belong."""
+
+from contextlib import nullcontext
+
+import numpy as np
+import pytest
+
+from lbm import Inlet, InputError, OutsideRangeWarning, Rates, RatesByPlace, Simulation
+from lbm.observers import Sums
+from lbm.spheres import Sphere, Spheres
+
+
+def test_blend_lies_between_the_two_sets_and_keeps_the_viscosity():
+    rates = RatesByPlace.quiet(0.004, reach=2, blend=3)
+    m = [layer.m for layer in rates.layers()]
+    assert m[0] == m[1] == rates.near_walls.m
+    assert m[-1] == rates.bulk.m
+    assert np.all(np.diff(m[1:]) > 0)
+    assert {layer.viscosity for layer in rates.layers()} == {rates.viscosity}
+
+
+def test_two_viscosities_are_refused():
+    with pytest.raises(InputError, match=r"viscosity 0\.02 in the bulk, 0\.01 near walls"):
+        RatesByPlace(Rates.quiet(0.02), Rates.two_relaxation_times(0.01), reach=2)
+
+
+def test_taylor_green_vortex_at_re_400_decays_as_by_a_spectral_code():
+    n, u0, reynolds = 48, 0.08, 400
+    k = 2 * np.pi / n
+    x, y, z = np.meshgrid(*[k * (np.arange(n) + 0.5)] * 3, indexing="ij")
+    shape = np.cos(z)
+    velocity = u0 * np.array([np.sin(x) * np.cos(y) * shape, -np.cos(x) * np.sin(y) * shape, 0 * x])
+    density = 1 + 3 * u0**2 / 16 * (np.cos(2 * x) + np.cos(2 * y)) * (np.cos(2 * z) + 2)
+    flow = Simulation((n, n, n), Rates.quiet(u0 / k / reynolds), dtype="float32")
+    flow.set_flow(density, velocity)
+    sums = Sums(every=10**6)
+    for t in (0, 5, 6):
+        flow.run(round(t / (u0 * k)) - flow.steps)
+        sums(flow)
+    energy = np.array(sums.rows)[-2:, 4] / sums.rows[0][4]
+    np.testing.assert_allclose(energy, [0.8404, 0.7578], rtol=0.01)
+
+
+@pytest.mark.parametrize("axis", [0, 2])
+def test_wall_of_a_channel_stays_in_its_place_where_bulk_rates_move_it(axis):
+    n, nu, top = 16, 0.006, 0.01
+    s = np.arange(n) + 0.5
+    exact = 4 * top * s * (n - s) / n**2
+    shape = tuple(n if a == axis else 4 for a in range(3))
+    force = (0.0, 8 * nu * top / n**2, 0.0)
+    slip = {}
+    for name, rates in {
+        "bulk": Rates.quiet(nu),
+        "by place": RatesByPlace.quiet(nu, reach=3),
+        "two": Rates.two_relaxation_times(nu),
+    }.items():
+        flow = Simulation(shape, rates, faces={"xyz"[axis]: "no-slip"}, force=force)
+        flow.set_flow(
+            1.0, np.array([0, 1, 0]).reshape(3, 1, 1, 1) * np.moveaxis(np.tile(exact, (4, 4, 1)), 2, axis)
+        )
+        flow.run(round(0.3 * n * n / nu))
+        profile = np.moveaxis(flow.velocity[1], axis, 2)[0, 0]
+        slip[name] = abs(profile[0] - exact[0]) / exact[0]
+    assert slip["two"] < 1e-4
+    assert slip["by place"] < 0.1 * slip["bulk"]
+
+
+def test_held_sphere_at_re_100_is_quiet():
+    d, speed, reynolds = 8, 0.08, 100
+    faces = {"x-": Inlet((speed, 0, 0)), "x+": "outlet", "y": "free-slip", "z": "free-slip"}
+    flow = Simulation((6 * d, 4 * d, 4 * d), Rates.quiet(speed * d / reynolds), faces=faces, dtype="float32")
+    flow.set_flow(1.0, (speed, 0, 0))
+    ball = Spheres(
+        [Sphere(d / 2, 1.0, (2 * d, 2 * d + 0.3, 2 * d + 0.2))], drive=lambda step, gap: (0.0, 0.0, 0.0)
+    )
+    flow.add(ball)
+    flow.run(round(10 * d / speed))
+    drag = []
+    for _ in range(round(2 * d / speed)):
+        flow.run(1, guard=None)
+        drag.append(ball.forces[0, 0])
+    steps = np.arange(len(drag))
+    trend = np.polyval(np.polyfit(steps, drag, 3), steps)
+    assert np.std(drag - trend) < 0.02 * np.mean(drag)
+
+
+@pytest.mark.parametrize(("preset", "shown"), [(Rates.two_relaxation_times, 10), (RatesByPlace.quiet, 53)])
+def test_grid_reynolds_number_beyond_what_was_shown_is_warned_of_once(preset, shown):
+    speed = 0.05
+    for factor, warned in ((0.9, 0), (1.1, 1)):
+        flow = Simulation((8, 8, 8), preset(speed / (factor * shown)))
+        flow.set_flow(1.0, (speed, 0, 0))
+        with pytest.warns(OutsideRangeWarning) if warned else nullcontext() as found:
+            flow.run(200)
+        assert len(found or ()) == warned
