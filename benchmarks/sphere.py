@@ -19,8 +19,9 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
+from lbm import Rates, Simulation
 from lbm.problems import spheres as flows
-from lbm.spheres import RESOLVED, lost_to_grid
+from lbm.spheres import RESOLVED, Sphere, Spheres, lost_to_grid
 from lbm.spheres.wall_motion import FRACTION
 from restitution import datasets
 from restitution.files import write_whole
@@ -102,6 +103,24 @@ def noise(scheme: str = "linear", viscosities=(0.1, 0.02, 0.003)) -> Iterator[Ch
             case = f"{scheme}, d 10, nu {viscosity:g}, Re {found.reynolds:.3g}, {name}"
             yield _row("force noise", case, found.noise, 0, 0.02, _EXACT)
             yield _row("lateral force", case, found.lateral, 0, 0.02, _EXACT)
+
+
+def mass(diameter: int = 10, way: float = 8.0) -> Iterator[Check]:
+    """Mass that a closed box gains, over the volume swept, while a sphere falls ``way`` diameters at Re 164."""
+    for speed in (0.05, 0.025):
+        shape = (4 * diameter, 4 * diameter, round((way + 3) * diameter))
+        rates = Rates.two_relaxation_times(speed * diameter / 164)
+        flow = Simulation(shape, rates, faces={"z": "no-slip"}, dtype="float32")
+        start = (2 * diameter + 0.3, 2 * diameter + 0.17, shape[2] - 1.5 * diameter)
+        fall = [Sphere(diameter / 2, 8.0, start)]
+        ball = Spheres(fall, drive=lambda step, gap, u=speed: (0.0, 0.0, -u * min(1.0, step / 200)))
+        flow.add(ball)
+        flow.run(round(way * diameter / speed) + 100)
+        fluid = ~flows.inside(shape, ball.centres[0], diameter / 2)
+        gained = float((flow.density.astype(float) - 1)[fluid].sum())
+        swept = math.pi / 4 * diameter**2 * way * diameter
+        case = f"d {diameter}, Re 164, lattice speed {speed:g}, way {way:g} d"
+        yield _row("mass gained over volume swept", case, gained / swept, 0, 0.001, _EXACT)
 
 
 def frames() -> Iterator[Check]:
@@ -191,6 +210,7 @@ GROUPS: dict[str, Callable[[], Iterator[Check]]] = {
     "wall-20": lambda: wall(20, width=4, height=3),
     "noise": noise,
     "noise-central-linear": lambda: noise("central-linear"),
+    "mass": mass,
     "frames": frames,
     "shear": shear,
     **{

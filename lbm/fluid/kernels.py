@@ -41,8 +41,6 @@ def _step_ends(populations, starts, first, last, nx, layer, along, force):
         for i in range(line):
             x = first_x + i
             _step_cell(populations, starts, x, load_rates(along, own, nx, x), force)
-    if whole < last:
-        prefetch_cell(populations, starts, whole + _AHEAD * line)
     for x in range(whole, last):
         _step_cell(populations, starts, x, load_rates(along, own, nx, x), force)
 
@@ -69,7 +67,11 @@ def _step_rows(populations, grid, rows, parity, first, last, z, places, force):
             for i in range(line):
                 _step_cell(populations, starts, first_x + i, rates, force)
         if places.last < grid.nx:
-            _step_ends(populations, starts, places.last, grid.nx, grid.nx, layer, places.along, force)
+            prefetch_cell(populations, starts, places.last + _AHEAD * line)
+        for x in range(places.last, places.plain):
+            _step_cell(populations, starts, x, rates, force)
+        if places.plain < grid.nx:
+            _step_ends(populations, starts, places.plain, grid.nx, grid.nx, layer, places.along, force)
         give_back(populations, grid, rows, parity, y, z)
 
 

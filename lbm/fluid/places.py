@@ -25,8 +25,8 @@ class Places(NamedTuple):
     """Scaled rates by layer, as the kernels see them.
 
     ``table[l]`` are the rates of layer l, ``rows[z, y]`` is the layer of row (y, z) as far as walls normal to y
-    and z decide. From ``first`` to ``last`` - 1, whole cache lines, it holds for all x; for the others
-    ``along``, flat of shape (layers, 18, nx), has the rates cell by cell.
+    and z decide. From ``first`` to ``plain`` - 1 it holds for all x, in whole cache lines to ``last`` - 1; for the
+    others ``along``, flat of shape (layers, 18, nx), has the rates cell by cell.
     """
 
     table: np.ndarray
@@ -34,6 +34,7 @@ class Places(NamedTuple):
     along: np.ndarray
     first: int
     last: int
+    plain: int
 
 
 def places(table: np.ndarray, walls: Sequence[bool], shape: tuple[int, int, int]) -> Places:
@@ -47,8 +48,11 @@ def places(table: np.ndarray, walls: Sequence[bool], shape: tuple[int, int, int]
     along = table[np.minimum(np.arange(len(table))[:, None], x[None, :])]  # (layers, nx, factors)
     line, nx = _LINE // table.itemsize, shape[0]
     first = min(-(-farthest // line) * line, nx // line * line) if walls[0] else 0
-    last = max(first, (nx - farthest if walls[1] else nx) // line * line)
-    return Places(table, rows, np.ascontiguousarray(along.transpose(0, 2, 1)).ravel(), first, last)
+    end = nx - farthest if walls[1] else nx
+    last = max(first, end // line * line)
+    within_low_wall = walls[0] and first < farthest
+    plain = last if within_low_wall else max(last, end)
+    return Places(table, rows, np.ascontiguousarray(along.transpose(0, 2, 1)).ravel(), first, last, plain)
 
 
 def _layer(cells: int, walls: Sequence[bool], farthest: int) -> np.ndarray:

@@ -196,9 +196,9 @@ class Spheres(Body):
         mirrors = [mirrored_axes(grid, centre) for centre in self.centres]
         for s, sums in enumerate(self._sums):
             exchange(populations, grid, parity, self.scheme, surfaces, s, sums)
-            force, torque, gain = np.split(np.add.reduce(sums), (3, 6))
-            self.forces[s], self.torques[s] = of_whole(mirrors[s], force, torque)
-            self.surplus[s] += parts(mirrors[s]) * gain[0]
+            total = np.add.reduce(sums)
+            self.forces[s], self.torques[s] = of_whole(mirrors[s], total[:3], total[3:6])
+            self.surplus[s] += parts(mirrors[s]) * total[6]
         before = self.centres.copy()
         for s in range(len(self.radii)):
             self._move(s, float(step), grid)

@@ -14,43 +14,52 @@ from lbm.errors import InputError
 from lbm.faces.records import AXES
 from lbm.fluid.lattice import SLIP, Grid
 
-
-def mirrored_axes(grid: Grid, centre: np.ndarray) -> np.ndarray:
-    """For each axis whether a free-slip face normal to it goes through ``centre``, booleans (3,)."""
-    low, high = (np.array(grid.faces[side::2]) == SLIP for side in (0, 1))
-    return (low & (centre == 0)) | (high & (centre == grid.shape))
+Mirrors = tuple[bool, bool, bool]
+"""For each axis whether a free-slip face normal to it goes through the centre of a sphere."""
 
 
-def parts(mirrors: np.ndarray) -> int:
+def mirrored_axes(grid: Grid, centre: np.ndarray) -> Mirrors:
+    """The :data:`Mirrors` of a sphere with this ``centre``."""
+    x, y, z = (
+        (low == SLIP and c == 0) or (high == SLIP and c == n)
+        for low, high, n, c in zip(grid.faces[::2], grid.faces[1::2], grid.shape, centre.tolist(), strict=True)
+    )
+    return x, y, z
+
+
+def parts(mirrors: Mirrors) -> int:
     """How many times the part within the box the whole is."""
-    return 2 ** int(np.count_nonzero(mirrors))
+    return 2 ** sum(mirrors)
 
 
-def of_whole(mirrors: np.ndarray, force: np.ndarray, torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def of_whole(mirrors: Mirrors, force: np.ndarray, torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Force and torque on the whole sphere from those on its surface within the box."""
+    if not any(mirrors):
+        return force, torque
     n = parts(mirrors)
     return np.where(mirrors, 0.0, n * force), np.where(_reverses_spin(mirrors), 0.0, n * torque)
 
 
-def refuse_asymmetric(mirrors: np.ndarray, name: str, vector: np.ndarray) -> None:
+def refuse_asymmetric(mirrors: Mirrors, name: str, vector: np.ndarray) -> None:
     """Raise :class:`InputError` for a velocity or force ``vector`` that leads out of a plane of symmetry."""
     _refuse(mirrors, name, vector, "lead out of")
 
 
-def refuse_asymmetric_spin(mirrors: np.ndarray, name: str, spin: np.ndarray) -> None:
+def refuse_asymmetric_spin(mirrors: Mirrors, name: str, spin: np.ndarray) -> None:
     """Likewise for a spin that turns the sphere out of it."""
     _refuse(_reverses_spin(mirrors), name, spin, "turn it out of")
 
 
-def _refuse(zero: np.ndarray, name: str, vector: np.ndarray, what: str) -> None:
-    if np.any(vector[zero]):
-        axis = int(np.flatnonzero(zero & (vector != 0))[0])
+def _refuse(zero: Mirrors, name: str, vector: np.ndarray, what: str) -> None:
+    axis = next((axis for axis in range(3) if zero[axis] and vector[axis] != 0), None)
+    if axis is not None:
         raise InputError(
             f"{name}: component {AXES[axis]} = {vector[axis]:g} would {what} a plane of symmetry, the "
             "free-slip face through the centre of the sphere: take the whole box"
         )
 
 
-def _reverses_spin(mirrors: np.ndarray) -> np.ndarray:
+def _reverses_spin(mirrors: Mirrors) -> Mirrors:
     """A mirror reverses the components of a spin that lie in its plane."""
-    return np.array([np.any(np.delete(mirrors, axis)) for axis in range(3)])
+    x, y, z = mirrors
+    return y or z, x or z, x or y
