@@ -7,7 +7,7 @@ import pytest
 
 from restitution import datasets
 from restitution.bounce.edges import restitution_at
-from restitution.calibration.result.fit_result import read_fit
+from restitution.calibration.result.fit_file import read_fit
 from restitution.cli import main
 from restitution.export import fit_closure
 
