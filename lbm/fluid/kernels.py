@@ -9,7 +9,7 @@ from lbm.fluid.cache import kernel
 from lbm.fluid.collision import collide
 from lbm.fluid.lattice import give_back, lend, row_starts
 from lbm.fluid.memory import line_length, load_cell, prefetch_cell, store_cell
-from lbm.fluid.places import FACTORS, load_rates, row_rates
+from lbm.fluid.places import FACTORS, load_rates
 
 _AHEAD = 6
 """How many cache lines ahead a row asks for its memory (benchmarks/README.md)."""
@@ -31,24 +31,10 @@ def _step_cell(populations, starts, x, rates, force):
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def _step_ends(populations, starts, first, last, nx, layer, along, force):
-    """Collide and stream the cells first to last - 1 of a row, each with rates of its own."""
-    line = line_length(populations)
-    own = np.int64(layer) * FACTORS * nx
-    whole = last - (last - first) % line
-    for first_x in range(first, whole, line):
-        prefetch_cell(populations, starts, first_x + _AHEAD * line)
-        for i in range(line):
-            x = first_x + i
-            _step_cell(populations, starts, x, load_rates(along, own, nx, x), force)
-    for x in range(whole, last):
-        _step_cell(populations, starts, x, load_rates(along, own, nx, x), force)
-
-
-@njit(error_model="numpy", fastmath={"contract"})
 def _step_rows(populations, grid, rows, parity, first, last, z, places, force):
     """Collide and stream rows first to last - 1 of plane z in place."""
     line = line_length(populations)
+    whole = grid.nx - grid.nx % line
     if first < last:
         lend(populations, grid, rows, parity, first, z)
     for y in range(first, last):
@@ -56,22 +42,19 @@ def _step_rows(populations, grid, rows, parity, first, last, z, places, force):
             # A row ahead: a vector load right behind the store of one of its elements would stall.
             lend(populations, grid, rows, parity, y + 1, z)
         starts = row_starts(grid, rows, parity, y, z)
-        layer = places.rows[z, y]
-        rates = row_rates(places, layer)
-        if places.first > 0:
-            _step_ends(populations, starts, 0, places.first, grid.nx, layer, places.along, force)
-        for first_x in range(places.first, places.last, line):
+        layer = places.rows[z, y] * places.kinds
+        for first_x in range(0, whole, line):
             # What lies beyond the end of the row is the next row, so asking past the end is of use.
             prefetch_cell(populations, starts, first_x + _AHEAD * line)
+            own = (layer + places.lines[first_x // line]) * FACTORS * line
             # a constant length: compiled to vectors without a remainder
             for i in range(line):
-                _step_cell(populations, starts, first_x + i, rates, force)
-        if places.last < grid.nx:
-            prefetch_cell(populations, starts, places.last + _AHEAD * line)
-        for x in range(places.last, places.plain):
-            _step_cell(populations, starts, x, rates, force)
-        if places.plain < grid.nx:
-            _step_ends(populations, starts, places.plain, grid.nx, grid.nx, layer, places.along, force)
+                _step_cell(populations, starts, first_x + i, load_rates(places.table, own, i), force)
+        if whole < grid.nx:
+            prefetch_cell(populations, starts, whole + _AHEAD * line)
+            own = (layer + places.lines[whole // line]) * FACTORS * line
+            for i in range(grid.nx - whole):
+                _step_cell(populations, starts, whole + i, load_rates(places.table, own, i), force)
         give_back(populations, grid, rows, parity, y, z)
 
 

@@ -14,6 +14,9 @@ from numba.extending import intrinsic
 
 from lbm.fluid.stencil import Q
 
+LINE_BYTES = 64
+"""Of a cache line."""
+
 
 def _alias_scopes(module):
     """One (scope, all other scopes) pair of metadata lists a population, and one for the rates, the last."""
@@ -110,6 +113,6 @@ def line_length(typingctx, array):
 
     def codegen(context, builder, signature, args):
         size = context.get_abi_sizeof(context.get_data_type(signature.args[0].dtype))
-        return context.get_constant(types.int64, 64 // size)
+        return context.get_constant(types.int64, LINE_BYTES // size)
 
     return types.int64(array), codegen

@@ -1,8 +1,9 @@
 """Which relaxation rates hold in which cell: by its layer, counted from the nearest no-slip wall.
 
-Along a row the layer changes only near walls normal to x. All other cells of the row share one set of rates, which
-the sweep keeps in registers; at the ends of the row each cell reads its own from a table, in cache lines as it
-does the populations, so that both loops are compiled to vectors.
+A row of cells has a layer as far as walls normal to y and z decide; along it each cache line has a kind, which
+says how far its cells are from walls normal to x. ``table[layer, kind, j, lane]`` is the j-th of the scaled rates
+of a cell, lanes being the cells of a cache line: rates are read as vectors, as populations are, and one loop serves
+rows near walls and far from them, and uniform rates, which are one layer and one kind.
 """
 
 from __future__ import annotations
@@ -11,48 +12,38 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, types
+from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
-from lbm.fluid.memory import rates_scopes
+from lbm.fluid.memory import LINE_BYTES, rates_scopes
 
-_LINE = 64  # bytes in a cache line
 FACTORS = 18
 """Length of :meth:`lbm.rates.Rates.scaled`."""
 
 
 class Places(NamedTuple):
-    """Scaled rates by layer, as the kernels see them.
-
-    ``table[l]`` are the rates of layer l, ``rows[z, y]`` is the layer of row (y, z) as far as walls normal to y
-    and z decide. From ``first`` to ``plain`` - 1 it holds for all x, in whole cache lines to ``last`` - 1; for the
-    others ``along``, flat of shape (layers, 18, nx), has the rates cell by cell.
-    """
+    """The ``table``, flat; the layers of ``rows`` (nz, ny); the kinds of the ``lines`` of a row, and how many."""
 
     table: np.ndarray
     rows: np.ndarray
-    along: np.ndarray
-    first: int
-    last: int
-    plain: int
+    lines: np.ndarray
+    kinds: int
 
 
-def places(table: np.ndarray, walls: Sequence[bool], shape: tuple[int, int, int]) -> Places:
+def places(scaled: np.ndarray, walls: Sequence[bool], shape: tuple[int, int, int]) -> Places:
     """Scaled rates by layer, (layers, 18), counted from the faces x-, x+, ..., z+ that are ``walls``.
 
     The last ones are for all cells beyond.
     """
-    farthest = len(table) - 1
+    farthest, line = len(scaled) - 1, LINE_BYTES // scaled.itemsize
     x, y, z = (_layer(n, walls[2 * axis : 2 * axis + 2], farthest) for axis, n in enumerate(shape))
-    rows = np.minimum(z[:, None], y[None, :]).astype(np.uint8)
-    along = table[np.minimum(np.arange(len(table))[:, None], x[None, :])]  # (layers, nx, factors)
-    line, nx = _LINE // table.itemsize, shape[0]
-    first = min(-(-farthest // line) * line, nx // line * line) if walls[0] else 0
-    end = nx - farthest if walls[1] else nx
-    last = max(first, end // line * line)
-    within_low_wall = walls[0] and first < farthest
-    plain = last if within_low_wall else max(last, end)
-    return Places(table, rows, np.ascontiguousarray(along.transpose(0, 2, 1)).ravel(), first, last, plain)
+    rows = np.minimum(z[:, None], y[None, :]).astype(np.int64)
+    padded = np.concatenate([x, np.full(-shape[0] % line, farthest)]).reshape(-1, line)
+    lanes, lines = np.unique(padded, axis=0, return_inverse=True)
+    cells = np.minimum(np.arange(len(scaled))[:, None, None], lanes[None])  # (layers, kinds, lanes)
+    table = np.ascontiguousarray(scaled[cells].transpose(0, 1, 3, 2)).ravel()
+    return Places(table, rows, lines.reshape(-1).astype(np.int64), len(lanes))
 
 
 def _layer(cells: int, walls: Sequence[bool], farthest: int) -> np.ndarray:
@@ -65,32 +56,23 @@ def _layer(cells: int, walls: Sequence[bool], farthest: int) -> np.ndarray:
     return layer
 
 
-@njit(forceinline=True)
-def row_rates(places, layer):
-    """The rates of a layer."""
-    t = places.table[layer]
-    return (
-        t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8],
-        t[9], t[10], t[11], t[12], t[13], t[14], t[15], t[16], t[17],
-    )  # fmt: skip
-
-
 @intrinsic
-def load_rates(typingctx, along, start, stride, x):
-    """The 18 values ``along[start + i * stride + x]``."""
-    result = types.UniTuple(along.dtype, FACTORS)
+def load_rates(typingctx, table, start, lane):
+    """The 18 values ``table[start + j * line + lane]``, line being the length of a cache line."""
+    result = types.UniTuple(table.dtype, FACTORS)
 
     def codegen(context, builder, signature, args):
-        along, start, stride, x = args
-        data = context.make_array(signature.args[0])(context, builder, along).data
+        table, start, lane = args
+        data = context.make_array(signature.args[0])(context, builder, table).data
+        line = LINE_BYTES // context.get_abi_sizeof(context.get_data_type(signature.args[0].dtype))
         own, others = rates_scopes(builder.module)
-        values, row = [], start
-        for _ in range(FACTORS):
-            value = builder.load(builder.gep(data, [builder.add(row, x)], inbounds=True))
+        values = []
+        for j in range(FACTORS):
+            place = builder.add(builder.add(start, cgutils.intp_t(j * line)), lane)
+            value = builder.load(builder.gep(data, [place], inbounds=True))
             value.set_metadata("alias.scope", own)
             value.set_metadata("noalias", others)
             values.append(value)
-            row = builder.add(row, stride)
         return context.make_tuple(builder, result, values)
 
-    return result(along, types.int64, types.int64, types.int64), codegen
+    return result(table, types.int64, types.int64), codegen
