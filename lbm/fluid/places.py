@@ -2,7 +2,7 @@
 
 A row of cells has a layer as far as walls normal to y and z decide; along it each cache line has a kind, which
 says how far its cells are from walls normal to x. ``table[layer, kind, j, lane]`` is the j-th of the scaled rates
-of a cell, lanes being the cells of a cache line: rates are read as vectors, as populations are, and one loop serves
+of a cell, lanes being the cells of a line: rates are read as vectors, as populations are, and one loop serves
 rows near walls and far from them, and uniform rates, which are one layer and one kind.
 """
 
