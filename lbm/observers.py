@@ -13,7 +13,7 @@ import numpy as np
 
 from lbm import arguments
 from lbm.errors import DivergenceError, InputError, OutsideRangeWarning
-from lbm.faces.records import AXES
+from lbm.faces.records import AXES, NoSlip
 from lbm.flow import Flow
 from lbm.fluid import fields
 from lbm.fluid.stencil import CS2
@@ -107,7 +107,9 @@ class DivergenceGuard:
 
 
 def _warn_of_grid_reynolds(flow: Flow, speed: float) -> None:
-    shown, found = flow.rates.grid_reynolds, speed / flow.rates.viscosity
+    moving = any(isinstance(face, NoSlip) and face.moves for face in flow.faces)
+    shown = flow.rates.grid_reynolds_at_moving_walls if moving else flow.rates.grid_reynolds
+    found = speed / flow.rates.viscosity
     if found > shown and not flow.warned_of_grid_reynolds:
         flow.warned_of_grid_reynolds = True
         quiet = flow.rates.quiet(flow.rates.viscosity)

@@ -134,6 +134,11 @@ class Rates:
         """
         return 53.0 if self.m >= _FAST else 10.0
 
+    @property
+    def grid_reynolds_at_moving_walls(self) -> float:
+        """The same: rates do not change with the place."""
+        return self.grid_reynolds
+
     def layers(self) -> tuple[Rates, ...]:
         """Rates by layer of cells from a wall, of which this is the only one; see :class:`lbm.RatesByPlace`."""
         return (self,)

@@ -75,12 +75,13 @@ class RatesByPlace:
 
     @property
     def grid_reynolds(self) -> float:
-        """Largest speed times cell over viscosity up to which flows were shown to be stable.
+        """That of the bulk, for flow is slow beside a wall at rest; see :attr:`Rates.grid_reynolds`."""
+        return self.bulk.grid_reynolds
 
-        20: spheres at still walls were run so; a square cavity whose lid moves at 42 diverges, with the rates that
-        are slow near walls (benchmarks/README.md).
-        """
-        return 20.0
+    @property
+    def grid_reynolds_at_moving_walls(self) -> float:
+        """That of the rates near walls: a square cavity whose lid moves at 42 diverges (benchmarks/README.md)."""
+        return self.near_walls.grid_reynolds
 
     def layers(self) -> tuple[Rates, ...]:
         """Rates of the first, second, ... layer of cells from a wall; the last ones are those of all others."""

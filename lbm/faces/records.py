@@ -56,6 +56,11 @@ class NoSlip:
     velocity: Velocity = (0.0, 0.0, 0.0)
     kind = BOUNCE
 
+    @property
+    def moves(self) -> bool:
+        """Whether the wall may move: its velocity is a function, or not zero."""
+        return callable(self.velocity) or bool(np.any(np.asarray(self.velocity) != 0))
+
 
 @dataclass(frozen=True)
 class Inlet:

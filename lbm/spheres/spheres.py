@@ -181,8 +181,10 @@ class Spheres(Body):
                 if np.linalg.norm(apart) < r + self.radii[other]:
                     raise InputError(f"spheres {other} and {s} overlap")
 
-    def reach(self, lattice: Lattice) -> np.ndarray:
+    def reach(self, lattice: Lattice) -> np.ndarray | None:
         """The planes with links and refilled cells, their neighbours, and the neighbours of these."""
+        if not np.isfinite(self.centres).all():  # of a run that has diverged, as its guard will find
+            return None
         n, periodic = lattice.grid.nz, lattice.grid.z_low == PERIODIC
         ends = zip(self.centres[:, 2] - self.radii - 3, self.centres[:, 2] + self.radii + 3, strict=True)
         planes = np.concatenate([np.arange(math.floor(low), math.ceil(high)) for low, high in ends])

@@ -60,6 +60,7 @@ def test_light_and_heavy_spheres_fall_without_oscillation(ratio):
     assert np.diff(v)[50:].max() < 0.01 * abs(v[-1])
 
 
+@pytest.mark.filterwarnings("ignore:grid Reynolds number")
 @pytest.mark.parametrize(("ratio", "radius"), [(1.2, 5.0), (2.17, 3.0)])
 def test_spin_of_a_light_sphere_in_fluid_of_low_viscosity_dies_out(ratio, radius):
     flow = Simulation((24, 24, 24), Rates.two_relaxation_times(0.0017))

@@ -17,7 +17,7 @@ def falling(box, centre, faces, steps):
     def drive(step, gap):
         return None if gap < 2 else (0.0, 0.0, -0.06 * min(1.0, step / 40))
 
-    contact = DryRebound(0.97, volume * lattice_added_mass(2 * RADIUS))
+    contact = DryRebound(0.97, volume * lattice_added_mass(2 * RADIUS), 2 * RADIUS, 0.0)
     film = Film(RESOLVED, 1e-3, lambda gap, v, _: -6 * np.pi * 0.02 * RADIUS**2 * v * lost_to_grid(gap), None)
     flow = Simulation(box, Rates.two_relaxation_times(0.02), faces={"z": "no-slip", **faces})
     sphere = Sphere(RADIUS, 8.0, (*centre, RADIUS + 5))

@@ -9,6 +9,7 @@ from lbm.spheres import DryRebound, Sphere, Spheres
 
 RADIUS = 3.0
 WHOLE = (17, 16, 40), (8.3, 8.1)
+pytestmark = pytest.mark.filterwarnings("ignore:grid Reynolds number")
 BOXES = {
     "between walls": (*WHOLE, {"z": "no-slip"}),
     "periodic": (*WHOLE, {}),
@@ -23,7 +24,7 @@ def fall(box, at_once, dtype="float32", threads=1):
         Sphere(RADIUS, 8.0, (*place, RADIUS + 2.4), velocity=(0, 0, -0.08)),
         Sphere(2.5, 6.0, (*place, 24.2)),
     ]
-    ball = Spheres(spheres, gravity=(0.0, 0.0, -4e-4), contact=DryRebound(0.9, 60.0))
+    ball = Spheres(spheres, gravity=(0.0, 0.0, -4e-4), contact=DryRebound(0.9, 60.0, 10.0, 0.0))
     flow.add(ball)
     for steps in (80,) if at_once else (1,) * 80:
         flow.run(steps)

@@ -18,6 +18,7 @@ from restitution.runs.setup import check_edge, set_up
 from restitution.stokes import StokesNumber
 
 pytestmark = pytest.mark.filterwarnings("ignore:relaxation time")  # of cases that are not run
+EQ4 = {"law": "eq4_exponential", "measured": None}
 UNIT = 11.7
 """Of speed, m/s: 0.585 m/s are 0.05 cells a step."""
 
@@ -37,20 +38,20 @@ def case_of(name="gondret_st152_10_measured", speed=0.025, **contact):
     [({}, 0.1), ({"edge_d": 0.3}, 0.3), ({"law_edge_d": 0.2}, 0.2), ({"edge_d": 0.3, "law_edge_d": 0.1}, 0.3)],
 )
 def test_the_edge_is_that_of_the_case_or_of_its_law(contact, edge):
-    case = case_of("gondret_st152_10_eq4", **contact)
+    case = case_of(**EQ4, **contact)
     assert closures.edge_of(case) == edge
     assert closures_of(case).film == edge
     assert set_up(case).contact.edge == pytest.approx(10 * edge)
 
 
 def test_both_models_are_given_the_same_restitution_of_a_law_of_another_edge():
-    case = case_of("gondret_st152_10_eq4", edge_d=0.3, law_edge_d=0.1)
+    case = case_of(**EQ4, edge_d=0.3, law_edge_d=0.1)
     first = predict(case).path.impacts[0]
     through = at_edge(case.conditions, first.v_in, 0.3)
     on_lattice = (through**2 + 2 * case.conditions.free_fall * 0.3 * case.sphere.diameter) ** 0.5
     e = closures.rebound(case, UNIT)(on_lattice / UNIT, 0) / (on_lattice / UNIT)
     assert e == pytest.approx(first.e, rel=1e-6)
-    own = closures_of(case_of("gondret_st152_10_eq4")).rebound
+    own = closures_of(case_of(**EQ4)).rebound
     per_speed = 7800 * 3e-3 / 0.09
 
     def by_own(v):

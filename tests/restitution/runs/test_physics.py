@@ -130,7 +130,7 @@ def test_a_program_that_computes_something_else_makes_all_runs_stale(fresh):
 
 
 def test_probes_notice_a_part_of_the_solver_that_is_dropped(fresh, monkeypatch):
-    monkeypatch.setattr("lbm.spheres.spheres.refill", lambda *_: None)
+    monkeypatch.setattr("lbm.spheres.spheres.refill", lambda *_: 0.0)
     fresh()
     assert run_now().stale
 
