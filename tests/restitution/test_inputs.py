@@ -85,7 +85,7 @@ def test_what_would_exhaust_a_parser_is_refused_at_once(read, name, tmp_path):
     began = time.process_time()
     with pytest.raises(InputError) as refused:
         read(path)
-    assert time.process_time() - began < 1
+    assert time.process_time() - began < 10  # and not the minutes that the parser would take
     assert len(str(refused.value)) < 1000
 
 

@@ -105,6 +105,7 @@ def test_memory_is_little_more_than_the_populations(n, dtype):
     assert layout((n, n, n), (0,) * 6, itemsize).size <= 1.1 * 19 * n**3
 
 
+@pytest.mark.filterwarnings("ignore:grid Reynolds number")
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_mass_and_momentum_are_conserved_over_ten_thousand_steps(dtype):
     shape = (12, 10, 8)
