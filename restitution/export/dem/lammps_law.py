@@ -10,6 +10,7 @@ from __future__ import annotations
 from restitution.export.dashpot import dashpot
 from restitution.export.dem import at_impact
 from restitution.export.dem.snippet import (
+    E_AT_FIRST_CONTACT,
     STEPS_A_CONTACT,
     Request,
     comments,
@@ -27,17 +28,8 @@ LONGEST_STEP = {step:.6g}
 MODEL = f"hooke {{STIFFNESS}} 0.0 tangential linear_nohistory 0.0 0.0 damping velocity"
 """Contact model of pair_coeff and of the walls: no damping of its own, for that is added here."""
 {numbers}
-
-def _restitution(v, spheres):
-    """e at first contact: v the normal speed of approach in m/s, spheres (d, rho) of one at a wall or of two."""
-    if len(spheres) == 1:
-        ((d, rho_p),) = spheres
-        e = {wall}
-    else:
-        (d_1, rho_1), (d_2, rho_2) = spheres
-        e = {pair}
-    return max(e, {least!r})
-
+'''
+_ADD = '''
 
 def attach(lmp, walls=((2, 0.0),)):
     """Damp every contact of spheres, and of spheres with plane walls at rest, each (axis 0 to 2, its coordinate).
@@ -114,7 +106,7 @@ def lammps_law(impacts: Impacts, request: Request, version: str) -> str:
         "no coeff_restitution beside it and no lubrication: e_eff holds the viscous loss already",
     ]
     text = comments(impacts, "LAMMPS, Python", version, said) + "\n" + at_impact.functions(impacts, "python")
-    return text + _ATTACH.format(
+    return text + (_ATTACH + E_AT_FIRST_CONTACT + _ADD).format(
         stiffness=stiffness,
         fastest=fastest(impacts, request),
         step=step,

@@ -14,6 +14,18 @@ from restitution.export.tables import pair_lines
 
 OVERLAP = 0.01
 """Greatest overlap of an undamped contact, in diameters, that the stiffness is chosen for."""
+E_AT_FIRST_CONTACT = '''
+def _restitution(v, spheres):
+    """e at first contact: v the normal speed of approach in m/s, spheres (d, rho) of one at a wall or of two."""
+    if len(spheres) == 1:
+        ((d, rho_p),) = spheres
+        e = {wall}
+    else:
+        (d_1, rho_1), (d_2, rho_2) = spheres
+        e = {pair}
+    return max(e, {least!r})
+'''
+"""Python of level 2: e of a contact, for str.format with e at a ``wall``, of a ``pair``, and the ``least`` e."""
 STEPS_A_CONTACT = 50
 """Time steps that a contact must last."""
 

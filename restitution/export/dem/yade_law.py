@@ -11,24 +11,22 @@ import inspect
 
 from restitution.export.dashpot import CONTACT_WITHOUT_TENSION, dashpot
 from restitution.export.dem import at_impact
-from restitution.export.dem.snippet import STEPS_A_CONTACT, Request, comments, fastest, stiffness_for
+from restitution.export.dem.snippet import (
+    E_AT_FIRST_CONTACT,
+    STEPS_A_CONTACT,
+    Request,
+    comments,
+    fastest,
+    stiffness_for,
+)
 from restitution.export.impacts import Impacts
 
-_DAMP = '''
+_CONTACT = """
 
 {contact}
 {numbers}
-
-def _restitution(v, spheres):
-    """e at first contact: v the normal speed of approach in m/s, spheres (d, rho) of one at a wall or of two."""
-    if len(spheres) == 1:
-        ((d, rho_p),) = spheres
-        e = {wall}
-    else:
-        (d_1, rho_1), (d_2, rho_2) = spheres
-        e = {pair}
-    return max(e, {least!r})
-
+"""
+_DAMP = '''
 
 def damp_new_contacts():
     """Set the damping of the contacts that began in this step."""
@@ -80,7 +78,7 @@ def yade_law(impacts: Impacts, request: Request, version: str) -> str:
         "lubrication=True beside it",
     ]
     text = comments(impacts, "YADE", version, said) + "\n" + at_impact.functions(impacts, "python")
-    return text + _DAMP.format(
+    return text + (_CONTACT + E_AT_FIRST_CONTACT + _DAMP).format(
         contact="\n\n".join(inspect.getsource(f) for f in CONTACT_WITHOUT_TENSION) + "\n",
         numbers="".join(f"{name.upper()} = {value!r}\n" for name, value in fluid.items()),
         wall=at_impact.restitution_call(impacts, of, pair=False),

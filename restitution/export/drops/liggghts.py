@@ -97,7 +97,8 @@ def find(level: int) -> Installed:
     if program is None:
         raise NotInstalledError("LIGGGHTS is not installed: apt-get install liggghts on Debian")
     run = [program, "-in", "in.drop", "-log", "none"]
-    said = subprocess.run([program, "-h"], capture_output=True, text=True, check=False).stdout
+    # told to write no log, for it would lie where the user stands
+    said = subprocess.run([program, "-log", "none", "-h"], capture_output=True, text=True, check=False).stdout
     version = re.search(r"PUBLIC \S+", said)
     # Open MPI would start a daemon, and load the library there too.
     alone = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1"}
