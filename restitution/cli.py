@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from restitution import __version__
 from restitution.commands import (
     bounce,
+    cases,
     compare,
     data,
     design,
@@ -34,7 +35,21 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"restitution {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for module in (data, laws, impacts, look, fit, compare, predict, design, export, simulate, bounce, report):
+    for module in (
+        data,
+        laws,
+        impacts,
+        look,
+        fit,
+        compare,
+        predict,
+        design,
+        export,
+        cases,
+        simulate,
+        bounce,
+        report,
+    ):
         module.add_parser(commands)
     return parser
 

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from restitution.commands.cases import run_list
 from restitution.commands.console import show
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--snapshots", action="store_true", help="also write the flow as VTKHDF files for ParaView"
     )
-    parser.add_argument("--list", action="store_true", help="list the shipped cases")
+    parser.add_argument("--list", action="store_true", help="list the shipped cases, as 'cases list' does")
     parser.add_argument(
         "--template",
         metavar="FILE",
@@ -52,7 +53,7 @@ def run(args: argparse.Namespace) -> int | None:
     from restitution.runs.simulate import CHECKPOINT, SO_FAR, simulate
 
     if args.list:
-        _list()
+        run_list(args)
         return None
     if args.template is not None and not args.case:
         _write_template(TEMPLATE, Path(args.template))
@@ -80,16 +81,6 @@ def run(args: argparse.Namespace) -> int | None:
         raise
     show_result(folder, case)
     return None
-
-
-def _list() -> None:
-    from restitution.cases.reading import names, read_case
-    from restitution.commands.console import show_rows
-
-    cases = [read_case(name) for name in names()]
-    show_rows(
-        ("case", "cells per d", "title"), [(c.name, f"{c.numerics.cells_per_diameter:g}", c.title) for c in cases]
-    )
 
 
 def _write_template(case: Path, target: Path) -> None:

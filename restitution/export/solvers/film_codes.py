@@ -85,7 +85,8 @@ def _cell(film: Film) -> float:
     return film.cell
 
 
-def _walberla(film: Film) -> tuple[str, list[str], str]:
+def walberla_keys(film: Film) -> tuple[str, list[str], str]:
+    """Name, remarks and keys, one a line, for waLBerla."""
     cells = film.diameter / _cell(film)
     said = [
         "keys of apps/benchmarks/FluidParticleCoupling, as in inputSphereWallCollision.dat",
@@ -102,7 +103,8 @@ def _walberla(film: Film) -> tuple[str, list[str], str]:
     return "waLBerla", said, keys
 
 
-def _lethe(film: Film) -> tuple[str, list[str], str]:
+def lethe_keys(film: Film) -> tuple[str, list[str], str]:
+    """Name, remarks and keys for Lethe: one subsection DEM."""
     cell = _cell(film)
     said = [
         "sharp immersed boundary; both ranges are multiples of the smallest cell, "
@@ -155,9 +157,9 @@ FILM_CODES: dict[str, tuple[str, str, Callable[[Film], tuple[str, list[str], str
     "walberla": (
         "waLBerla keys: e_dry, least gap, cut-off",
         "7.2 of June 2026, from its source",
-        _walberla,
+        walberla_keys,
     ),
-    "lethe": ("Lethe keys: e_dry, lubrication range", "documentation at 17a67db", _lethe),
+    "lethe": ("Lethe keys: e_dry, lubrication range", "documentation at 17a67db", lethe_keys),
     "liggghts-pfm": (
         "LIGGGHTS-PFM hertz/lubricated: e_dry, roughness",
         "d075b97 of January 2024, from its manual",
