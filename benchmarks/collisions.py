@@ -18,9 +18,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from lbm import DivergenceError, Inlet, NoSlip, Rates, RatesByPlace, Simulation
+from lbm import DivergenceError, NoSlip, Rates, RatesByPlace, Simulation
 from lbm.observers import Sums
-from lbm.spheres import Sphere, Spheres
+from lbm.problems.held_sphere import held_sphere as held
 from restitution.files import write_whole
 
 
@@ -87,25 +87,8 @@ def cavity(preset: Callable, cells: int) -> dict[str, float]:
 
 def held_sphere(preset: Callable, diameter: int, reynolds: float) -> dict[str, float]:
     """Drag coefficient in a box of 5 x 5 x 8 d, and rms of the force about its trend over four d/U."""
-    d, speed = diameter, 0.08
-    faces = {"x-": Inlet((speed, 0, 0)), "x+": "outlet", "y": "free-slip", "z": "free-slip"}
-    flow = Simulation((8 * d, 5 * d, 5 * d), preset(speed * d / reynolds), faces=faces, dtype="float32")
-    flow.set_flow(1.0, (speed, 0, 0))
-    centre = (2.5 * d, 2.5 * d + 0.3, 2.5 * d + 0.2)
-    ball = Spheres([Sphere(d / 2, 1.0, centre)], drive=lambda step, gap: (0.0, 0.0, 0.0))
-    flow.add(ball)
-    flow.run(round(15 * d / speed))
-    drag = []
-    for _ in range(round(4 * d / speed)):
-        flow.run(1, guard=None)
-        drag.append(ball.forces[0, 0])
-    steps = np.linspace(-1, 1, len(drag))
-    trend = np.polyval(np.polyfit(steps, drag, 6), steps)
-    mean = float(np.mean(drag))
-    return {
-        "C_D": mean / (0.5 * speed**2 * np.pi / 4 * d**2),
-        "noise": float(np.std(drag - trend)) / mean,
-    }
+    found = held(diameter, reynolds, rates=preset)
+    return {"C_D": found.coefficient, "noise": found.noise}
 
 
 FLOWS: dict[str, tuple[int, Callable]] = {

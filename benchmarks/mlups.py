@@ -24,19 +24,13 @@ from pathlib import Path
 
 import numba
 import numpy as np
-from numba import njit, prange
 from rich.console import Console
 from rich.table import Table
 
 from benchmarks.peers import lbmpy_steps
 from lbm import Body, Rates, Simulation
 from lbm.fluid.stencil import Q
-
-
-@njit(parallel=True)
-def _scale_in_place(a, factor):
-    for i in prange(a.size):
-        a[i] *= factor
+from lbm.problems.roofline import read_and_write
 
 
 class _Nothing(Body):
@@ -78,7 +72,7 @@ def _contestants(n: int, dtype, threads: int) -> dict[str, Callable[[], None]]:
 
     def memory():
         for _ in range(2):
-            _scale_in_place(populations, populations.dtype.type(1))
+            read_and_write(populations, populations.dtype.type(1))
 
     timed = {"in-place read + write": memory}
     for name, fluid in fluids.items():

@@ -168,16 +168,16 @@ def settling(case: str, diameter: float) -> Iterator[Check]:
 def contact() -> Iterator[Check]:
     """What the sub-steps and the place in the cell change in a rebound at St = 30."""
     gap, velocity = flows.rebound()
-    e = _restitution(gap, velocity)
+    e = flows.restitution(gap, velocity)
     for factor in (0.5, 2):
-        other = _restitution(*flows.rebound(fraction=factor * FRACTION))
+        other = flows.restitution(*flows.rebound(fraction=factor * FRACTION))
         case = f"d 10, St 30, sub-step {factor:g} of the default"
         yield _row("contact, change of e", case, other - e, 0, 0.002, _EXACT)
     for name, places in (
         ("start height", [{"start": 1.5 + s / 10} for s in (0, 0.2, 0.4, 0.6, 0.8)]),
         ("lateral place", [{"lateral": s[:2]} for s in flows.SHIFTS]),
     ):
-        apexes = [_apex(*flows.rebound(**place)) for place in places]
+        apexes = [flows.apex(*flows.rebound(**place)) for place in places]
         yield _row(
             "contact, spread of first apex",
             f"d 10, St 30, {name}",
@@ -186,18 +186,6 @@ def contact() -> Iterator[Check]:
             None,
             _EXACT,
         )
-
-
-def _restitution(gap: np.ndarray, velocity: np.ndarray) -> float:
-    """-v_out/v_in at a tenth of the diameter."""
-    turn = int(np.argmin(gap))
-    into = np.flatnonzero(gap[:turn] > 0.1)[-1]
-    out = turn + np.flatnonzero(gap[turn:] > 0.1)[0]
-    return -float(velocity[out] / velocity[into])
-
-
-def _apex(gap: np.ndarray, velocity: np.ndarray) -> float:
-    return float(gap[np.argmin(gap) :].max())
 
 
 GROUPS: dict[str, Callable[[], Iterator[Check]]] = {

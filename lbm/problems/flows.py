@@ -18,7 +18,7 @@ from lbm.fluid.stencil import C, Q
 from lbm.rates import Rates
 from lbm.simulation import Simulation
 
-__all__ = ["PROBLEMS", "Case", "Problem"]
+__all__ = ["PROBLEMS", "Case", "Problem", "measured_viscosity", "observed_order"]
 
 _THIN = 4  # cells along an axis on which nothing depends
 _SPEED_AT_16 = 0.02  # lattice speed at 16 cells
@@ -246,6 +246,29 @@ def _inclined_poiseuille(n, rates, dtype, nu) -> Case:
     simulation.add(FixedBody(solid, fraction))
     simulation.set_flow(1.0, flow)
     return Case(simulation, round(0.5 * n * n / nu), lambda t: flow, ~solid)
+
+
+def measured_viscosity(name: str, cells: int, preset: Preset = Rates.two_relaxation_times, **options) -> float:
+    """Viscosity of a decaying flow over the one set, from its energy between a third of the run and its end."""
+    problem = PROBLEMS[name]
+    case = problem.case(cells, preset, **options)
+    k2 = (2 * np.pi / cells) ** 2 * (2 if name == "taylor-green" else 1)
+    first = case.steps // 3
+    case.simulation.run(first)
+    early = np.sum(case.simulation.velocity**2)
+    case.simulation.run(case.steps - first)
+    late = np.sum(case.simulation.velocity**2)
+    return float(np.log(early / late) / (2 * k2 * (case.steps - first)) / problem.viscosity)
+
+
+def observed_order(name: str, coarse: int, preset: Preset = Rates.two_relaxation_times, **options) -> float:
+    """Order in space: log2 of the error at ``coarse`` cells over that at twice as many."""
+    errors = []
+    for cells in (coarse, 2 * coarse):
+        case = PROBLEMS[name].case(cells, preset, **options)
+        case.simulation.run(case.steps)
+        errors.append(case.error())
+    return float(np.log2(errors[0] / errors[1]))
 
 
 _WHITE = "White, Viscous Fluid Flow, 3rd ed. (2006)"

@@ -300,3 +300,16 @@ def rebound(
     flow.run(int(1.5 * diameter / speed))
     track = ball.track()
     return track["gap"] / diameter, track["vz"] / speed
+
+
+def restitution(gap: np.ndarray, velocity: np.ndarray, edge: float = 0.1) -> float:
+    """-v_out/v_in where a :func:`rebound` crosses the gap ``edge``, in diameters."""
+    turn = int(np.argmin(gap))
+    into = np.flatnonzero(gap[:turn] > edge)[-1]
+    out = turn + np.flatnonzero(gap[turn:] > edge)[0]
+    return -float(velocity[out] / velocity[into])
+
+
+def apex(gap: np.ndarray, velocity: np.ndarray) -> float:
+    """Height of a :func:`rebound`, in diameters."""
+    return float(gap[np.argmin(gap) :].max())

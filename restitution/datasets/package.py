@@ -33,6 +33,8 @@ def _known_convention(key: str) -> str:
 
 
 Inside = Annotated[str, AfterValidator(_inside)]
+DIMENSIONLESS = ("drag", "oscillation")
+"""Kinds of tables that hold for any fluid and sphere, whoever measured them in which."""
 
 
 class Source(Record):
@@ -114,7 +116,9 @@ class Resource(Record):
 
     @model_validator(mode="after")
     def _with_conditions(self) -> Resource:
-        if self.kind != "reference" and (self.conditions is None or self.conventions is None):
+        if self.kind == "reference" or self.table in DIMENSIONLESS:
+            return self
+        if self.conditions is None or self.conventions is None:
             raise ValueError(f"a {self.kind} table needs conditions and conventions")
         return self
 

@@ -5,6 +5,7 @@ import pytest
 
 from lbm import Rates
 from lbm.problems import PROBLEMS
+from lbm.problems.flows import measured_viscosity, observed_order
 
 PRESETS = {
     "two-relaxation-times": Rates.two_relaxation_times,
@@ -21,15 +22,6 @@ def test_exact_solution_within_one_percent_at_16_cells(problem, preset, dtype, p
     case = problem.case(16, preset, dtype)
     case.simulation.run(case.steps + (case.steps + parity) % 2)
     assert case.error() < 0.01
-
-
-def _order(problem, preset, coarse, **options):
-    errors = []
-    for cells in (coarse, 2 * coarse):
-        case = problem.case(cells, preset, **options)
-        case.simulation.run(case.steps)
-        errors.append(case.error())
-    return np.log2(errors[0] / errors[1])
 
 
 # Each pair of problem and rates for which the leading error does not vanish, at a resolution where it leads.
@@ -54,7 +46,7 @@ def _order(problem, preset, coarse, **options):
     ],
 )
 def test_second_order_in_space(name, preset, coarse):
-    assert _order(PROBLEMS[name], PRESETS[preset], coarse) == pytest.approx(2.0, abs=0.1)
+    assert observed_order(name, coarse, PRESETS[preset]) == pytest.approx(2.0, abs=0.1)
 
 
 def test_poiseuille_along_the_grid_is_exact_with_the_magic_parameter():
@@ -69,19 +61,6 @@ def test_couette_is_exact():
     assert case.error() < 1e-12
 
 
-def _measured_viscosity(name, preset, cells, **options):
-    """From the decay of the kinetic energy between a third of the run and its end."""
-    problem = PROBLEMS[name]
-    case = problem.case(cells, preset, **options)
-    k2 = (2 * np.pi / cells) ** 2 * (2 if name == "taylor-green" else 1)
-    first = case.steps // 3
-    case.simulation.run(first)
-    early = np.sum(case.simulation.velocity**2)
-    case.simulation.run(case.steps - first)
-    late = np.sum(case.simulation.velocity**2)
-    return np.log(early / late) / (2 * k2 * (case.steps - first)) / problem.viscosity
-
-
 # The remaining error is of order k^2, k = 2 pi/32, with a factor that depends on the rates: 0.1 % at once for
 # the first list, in the limit of two resolutions for all (0.32 % at 32 cells at worst).
 @pytest.mark.parametrize(
@@ -94,13 +73,13 @@ def _measured_viscosity(name, preset, cells, **options):
     ],
 )
 def test_viscosity_at_32_cells(name, preset):
-    assert _measured_viscosity(name, preset, 32) == pytest.approx(1, abs=1e-3)
+    assert measured_viscosity(name, 32, preset) == pytest.approx(1, abs=1e-3)
 
 
 @pytest.mark.parametrize("name", ["taylor-green", "shear-wave"])
 @pytest.mark.parametrize("preset", PRESETS.values(), ids=PRESETS)
 def test_viscosity_converges_to_the_one_set(name, preset):
-    coarse, fine = (_measured_viscosity(name, preset, cells) for cells in (32, 64))
+    coarse, fine = (measured_viscosity(name, cells, preset) for cells in (32, 64))
     assert coarse == pytest.approx(1, abs=4e-3)
     assert (4 * fine - coarse) / 3 == pytest.approx(1, abs=1e-4)
 
@@ -108,10 +87,10 @@ def test_viscosity_converges_to_the_one_set(name, preset):
 @pytest.mark.parametrize("preset", PRESETS.values(), ids=PRESETS)
 def test_all_directions_are_alike(preset):
     waves = [
-        _measured_viscosity("shear-wave", preset, 16, axis=axis, direction=direction)
+        measured_viscosity("shear-wave", 16, preset, axis=axis, direction=direction)
         for axis, direction in itertools.permutations(range(3), 2)
     ]
-    vortices = [_measured_viscosity("taylor-green", preset, 16, axis=axis) for axis in range(3)]
+    vortices = [measured_viscosity("taylor-green", 16, preset, axis=axis) for axis in range(3)]
     assert np.ptp(waves) < 1e-12
     assert np.ptp(vortices) < 1e-12
 
