@@ -16,7 +16,7 @@ def check_values() -> Values:
     for name in laws.names():
         law = laws.get(name)
         for check in law.checks:
-            tolerance = max(check.tolerance, _DIGITS * abs(check.value))
+            tolerance = max(check.tolerance, _DIGITS * max(1.0, abs(check.value)))
             off = abs(_value(law.replace(**check.parameters), check.inputs) - check.value) / tolerance
             found[law.family] = max(found.get(law.family, 0.0), off)
     return found
@@ -55,7 +55,7 @@ def drag() -> Values:
 
 
 _DIGITS = 1e-14
-"""Where a check value is exact: round-off, over the value."""
+"""Where a check value is exact: round-off, over the value or 1."""
 _FAMILIES = ("rebound", "resistance", "drag", "history")
 
 ROWS = (
