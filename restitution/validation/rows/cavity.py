@@ -17,9 +17,9 @@ _SHORTFALL = (
 )
 
 
-def profile(cells: int, lid_times: float) -> Values:
+def profile(cells: int, lid_times: float, dtype: str) -> Values:
     """Velocities over the lid's at the places of the tables, by linear interpolation between cells."""
-    lines = cubic_cavity(cells, 1000.0, lid_times=lid_times)
+    lines = cubic_cavity(cells, 1000.0, lid_times=lid_times, dtype=dtype)
     of = {"along": lines.along_velocity, "across": lines.across_velocity}
     return {p.label: float(np.interp(p.place, lines.place, of[p.direction])) for p in points()}
 
@@ -61,7 +61,7 @@ def _row(cells: int, depth: Depth, missed: Callable[[], Mapping[str, str]] | Non
         f"cubic-cavity-{cells}", f"velocities on the centre lines of the lid-driven cube, Re 1000, {cells}^3",
         Kind.PUBLISHED, _SOURCE, _truth,
         "five decimals are printed; a goal for the grid: a hundredth of the extrema, 0.005 of the lid's speed",
-        profile, {"cells": cells, "lid_times": 40.0}, depth, "U",
+        profile, {"cells": cells, "lid_times": 40.0, "dtype": "float32"}, depth, "U",
     )  # fmt: skip
 
 

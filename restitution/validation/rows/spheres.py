@@ -25,17 +25,17 @@ def array_drag(fraction: float, cells: int) -> Values:
     }
 
 
-def steady_drag(reynolds: tuple[float, ...], diameter: int, width: float, quarter: bool = True) -> Values:
+def steady_drag(reynolds: tuple[float, ...], diameter: int, width: float, dtype: str, quarter: bool = True) -> Values:
     """C_D of a held sphere at each Reynolds number in a box as long as 5/4 of its width; a quarter is computed."""
     box = Stream(width / 2, 0.75 * width, width, quarter, settling=15.0)
-    return {f"Re {Re:g}": held_sphere(diameter, Re, box).coefficient for Re in reynolds}
+    return {f"Re {Re:g}": held_sphere(diameter, Re, box, dtype=dtype).coefficient for Re in reynolds}
 
 
-def fine_drag(diameter: int, width: float) -> Values:
+def fine_drag(diameter: int, width: float, dtype: str) -> Values:
     """The same on a fine grid, and at Re 300, where vortices are shed and the whole box is needed."""
     return {
-        **steady_drag(_STEADY, diameter, width),
-        **steady_drag((300.0,), diameter, width, quarter=False),
+        **steady_drag(_STEADY, diameter, width, dtype),
+        **steady_drag((300.0,), diameter, width, dtype, quarter=False),
     }
 
 
@@ -129,17 +129,17 @@ ROWS = (
     Row(
         "steady-drag-20", "C_D of a held sphere, Re 20, 8 cells a diameter", Kind.MEASURED, _ROOS,
         lambda: measured_drag((20.0,)), _CLOUD, steady_drag,
-        {"reynolds": (20.0,), "diameter": 8, "width": 10.0},
+        {"reynolds": (20.0,), "diameter": 8, "width": 10.0, "dtype": "float32"},
     ),
     Row(
         "steady-drag", "C_D of a held sphere, 10 cells a diameter", Kind.MEASURED, _ROOS,
         lambda: measured_drag(_STEADY), _CLOUD, steady_drag,
-        {"reynolds": _STEADY, "diameter": 10, "width": 8.0}, Depth.DEFAULT,
+        {"reynolds": _STEADY, "diameter": 10, "width": 8.0, "dtype": "float32"}, Depth.DEFAULT,
         known={"Re 100": _LAYER, "Re 200": _LAYER},
     ),
     Row(
         "steady-drag-fine", "C_D of a held sphere, 16 cells a diameter", Kind.MEASURED, _ROOS,
-        lambda: measured_drag((*_STEADY, 300.0)), _CLOUD, fine_drag, {"diameter": 16, "width": 8.0}, Depth.FULL,
+        lambda: measured_drag((*_STEADY, 300.0)), _CLOUD, fine_drag, {"diameter": 16, "width": 8.0, "dtype": "float32"}, Depth.FULL,
     ),
     Row(
         "force-balance", "what is missing of the equations of motion, over the largest term", Kind.ANALYTICAL,

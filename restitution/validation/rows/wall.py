@@ -6,7 +6,9 @@ import numpy as np
 
 from lbm.problems import spheres as flows
 from lbm.spheres import lost_to_grid
+from restitution.cases.reading import read_case
 from restitution.laws.brenner_1961 import Brenner1961
+from restitution.runs.setup import set_up
 from restitution.validation.row import Depth, Kind, Row, Values, near
 
 GAPS = (2.0, 1.5, 1.0, 0.75, 0.5, 0.4, 0.3, 0.2, 0.1, 0.05)
@@ -38,7 +40,35 @@ def _row(diameter: int, width: float, height: float, depth: Depth, missed: tuple
     )  # fmt: skip
 
 
+def film_of_case(case: str) -> Values:
+    """Force of a case's film on a sphere that comes, over that of Taylor's lubrication less the grid's share.
+
+    The share by quadrature of Reynolds' equation for a film that ends where it is half a cell thick::
+
+        1/h - 2 int_c^inf (H - c)^2/((H - h) H^3) dH,   c = 1/2 cell
+    """
+    from scipy.integrate import quad
+
+    setup = set_up(read_case(case))
+    radius, viscosity, speed, c = setup.flow.length / 2, setup.flow.viscosity, 1e-3, 0.5
+    found = {}
+    for gap in FILM_GAPS:
+        share, _ = quad(lambda H, h: 2 * (H - c) ** 2 / ((H - h) * H**3), c, np.inf, args=(gap,), epsabs=1e-12)
+        lacking = 6 * np.pi * viscosity * radius**2 * speed * (1 / gap - share)
+        found[_label(gap)] = float(setup.film.normal(gap, -speed, -speed)) / lacking
+    return found
+
+
+FILM_GAPS = (0.02, 0.1, 0.3, 0.45)
+"""In cells."""
+
 ROWS = (
+    Row(
+        "film-force", "force of the film of case li_drop1 on a sphere that comes, over what the grid lacks",
+        Kind.ANALYTICAL, "Taylor's lubrication; Reynolds' equation for the share of a grid that ends at half a cell",
+        tuple(near(_label(gap), 1.0, absolute=1e-6) for gap in FILM_GAPS), "quadrature", film_of_case,
+        {"case": "li_drop1"},
+    ),
     _row(10, 4, 3, Depth.QUICK, (2.0, 1.5, 1.0, 0.75, 0.5, 0.4, 0.3, 0.2)),
     _row(16, 4, 3, Depth.DEFAULT, (1.5, 1.0, 0.75, 0.5)),
-)
+)  # fmt: skip
