@@ -61,8 +61,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Measure, print, write; returns the exit status."""
-    from restitution.files import write_folder
+    from restitution.files import write_folder, write_whole
     from restitution.validation import page
+    from restitution.validation.baseline import blessed
     from restitution.validation.row import Depth
     from restitution.validation.rows import Setting, all_rows, chosen
     from restitution.validation.scorecard import FILE, SO_FAR, Judged, Scorecard
@@ -76,6 +77,10 @@ def run(args: argparse.Namespace) -> int:
     again = folder / "runs" if depth is Depth.FULL and not args.only and not args.failed else None
     every = all_rows(Setting(Path(args.runs), again))
     rows = chosen(every, depth, _only(args, folder))
+    if not rows:
+        show("every row of that scorecard passed")
+        return 0
+    spread = _spread(args, path, rows)
     results = _measured(args, rows, baseline, folder)
     judged = [Judged.of(row, results[name], baseline and baseline.held(row)) for name, row in rows.items()]
     card = Scorecard(judged, args.depth, str(path) if baseline else "", args.strict)
@@ -85,7 +90,8 @@ def run(args: argparse.Namespace) -> int:
     for name in (FILE, "index.html"):
         show(str(folder / name))
     if args.bless is not None:
-        _bless(args.bless, path, baseline, rows, results, every)
+        write_whole(path, blessed(rows, results, spread, args.bless, baseline, every).text())
+        show(f"{path}: {len(rows)} rows renewed")
         return 0
     return card.status
 
@@ -116,6 +122,17 @@ def _baseline(args: argparse.Namespace) -> tuple[Path, Baseline | None]:
     if args.baseline and args.bless is None:
         raise InputError(Defect("is not there", file=args.baseline, field="--baseline"))
     return path, None
+
+
+def _spread(args: argparse.Namespace, path: Path, rows: dict[str, Row]) -> dict[str, dict[str, float]]:
+    """The measured spread, where the baseline is to be renewed; what forbids that is said before any work."""
+    from restitution.validation.baseline import SPREAD, check_blessing, read_spread
+
+    if args.bless is None:
+        return {}
+    spread = read_spread(path.with_name(SPREAD))
+    check_blessing(rows, spread, args.bless)
+    return spread
 
 
 def _only(args: argparse.Namespace, folder: Path) -> list[str] | None:
@@ -165,12 +182,3 @@ def _show(card: Scorecard) -> None:
         truth, baseline = card.count(verdict)
         if truth or baseline:
             show(f"{verdict}: {truth} against the truth, {baseline} against the baseline")
-
-
-def _bless(reason: str, path: Path, before, rows, results, every) -> None:
-    from restitution.files import write_whole
-    from restitution.validation.baseline import SPREAD, blessed, read_spread
-
-    spread = read_spread(path.with_name(SPREAD))
-    write_whole(path, blessed(rows, results, spread, reason, before, every).text())
-    show(f"{path}: {len(rows)} rows renewed")

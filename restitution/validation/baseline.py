@@ -116,6 +116,25 @@ def read_spread(path: Path) -> dict[str, dict[str, float]]:
         raise InputError(Defect("is no table of spreads", file=str(path))) from None
 
 
+def check_blessing(rows: Mapping[str, Row], spread: Mapping[str, Mapping[str, float]], reason: str) -> str:
+    """The commit that a baseline of ``rows`` would be of, found before they are measured.
+
+    Raises :class:`InputError` for an empty reason, a program that is not as committed, and values whose spread was
+    not measured, naming each.
+    """
+    defects = [] if reason.strip() else [Defect("say why, in a few words", field="--bless")]
+    commit, dirty = _committed()
+    defects += [Defect(f"is not as committed: commit first, then --bless ({dirty})")] if dirty else []
+    for name, row in rows.items():
+        missing = [r.label for r in row.truth() if r.label not in spread.get(name, {})]
+        if missing:
+            rule = f"its spread was not measured: python -m benchmarks.validation --spread --only {name}"
+            defects.append(Defect(rule, field=name, value=missing[0]))
+    if defects:
+        raise InputError(*defects)
+    return commit
+
+
 def blessed(
     rows: Mapping[str, Row],
     results: Mapping[str, Result],
@@ -126,34 +145,27 @@ def blessed(
 ) -> Baseline:
     """A baseline with ``rows`` renewed; others of ``before`` stay as long as they are ``known``.
 
-    Raises :class:`InputError` for an empty reason, a program that is not as committed, a row without a value and
-    a value whose spread was not measured, naming each.
+    Raises :class:`InputError` as :func:`check_blessing` does, and for a row without a value.
     """
-    defects = [] if reason.strip() else [Defect("say why, in a few words", field="--bless")]
-    commit, dirty = _committed()
-    defects += [Defect(f"is not as committed: commit first, then --bless ({dirty})")] if dirty else []
-    made: dict[str, HeldRow] = {}
-    date = time.strftime("%Y-%m-%d", time.gmtime())
+    commit = check_blessing(rows, spread, reason)
+    defects, made, date = [], {}, time.strftime("%Y-%m-%d", time.gmtime())
     for name, row in rows.items():
-        numbers, own = results[name].values, spread.get(name, {})
-        held: dict[str, HeldValue] = {}
-        for label in (r.label for r in row.truth()):
-            value = (numbers or {}).get(label)
-            if value is None:
-                defects.append(Defect(f"has no value: {results[name].why or 'not a number'}", field=name))
-                break
-            if label not in own:
-                rule = "its spread was not measured: python -m benchmarks.validation --spread"
-                defects.append(Defect(rule, field=name, value=label))
-                break
-            tolerance = max(SAFETY * own[label], _DIGITS * abs(value))
-            held[label] = HeldValue(value=_g(value), spread=_g(own[label]), tolerance=_g(tolerance))
+        values, labels = results[name].values or {}, [r.label for r in row.truth()]
+        if any(values.get(label) is None for label in labels):
+            defects.append(Defect(f"has no value: {results[name].why or 'not a number'}", field=name))
+            continue
+        held = {label: _held(values[label], spread[name][label]) for label in labels}
         made[name] = HeldRow(key=row.key, values=held, reason=reason.strip(), commit=commit, date=date)
     if defects:
         raise InputError(*defects)
     others = {} if before is None else {n: r for n, r in before.rows.items() if n in known}
     order = [*known]
     return Baseline(version=VERSION, rows=dict(sorted((others | made).items(), key=lambda e: order.index(e[0]))))
+
+
+def _held(value: float, spread: float) -> HeldValue:
+    tolerance = max(SAFETY * spread, _DIGITS * abs(value))
+    return HeldValue(value=_g(value), spread=_g(spread), tolerance=_g(tolerance))
 
 
 def _g(value: float) -> float:

@@ -56,7 +56,7 @@ def drag() -> Values:
 
 _DIGITS = 1e-14
 """Where a check value is exact: round-off, over the value or 1."""
-_FAMILIES = ("rebound", "resistance", "drag", "history")
+_FAMILIES = ("rebound", "resistance", "drag", "history", "film", "dry")
 
 ROWS = (
     Row(
