@@ -8,6 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from restitution import datasets
+from restitution.stokes import convention
+
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 MOST_LINES = 40
@@ -125,17 +128,23 @@ def settling_sphere(found):
 
 def score_a_trajectory(found):
     measured, simulated = found["measured"], found["simulated"]
-    np.testing.assert_allclose(measured["apexes"][:3], APEXES, rtol=0.01)
-    np.testing.assert_allclose(measured["intervals"], FLIGHTS, atol=1e-3)
-    # Biegert et al. state the impact speed 0.585 m/s, St 152, and show the first two apexes on the symbols.
-    assert simulated["stokes"][0] == pytest.approx(152, rel=0.02)
-    np.testing.assert_allclose(simulated["apexes"][:2], APEXES[:2], rtol=0.07)
-    for scores in (measured, simulated):
-        flights = scores["intervals"][:2]
-        np.testing.assert_allclose(flights, np.sqrt(8 * scores["apexes"][:2] / FREE_FALL), rtol=0.05)
-        np.testing.assert_allclose(scores["e_eff"][:2], legendre(scores["stokes"][:2]), atol=0.1)
-    apart = abs(measured["apexes"][0] - simulated["apexes"][0]) / 3e-3
-    assert apart / 3 < found["rms_d"] < 3 * apart  # an rms over flights that differ by so much at their tops
+    conditions = datasets.resource("gondret2002_st152").conditions
+    apexes, flights = (
+        [measured[label.format(n)] for n in (1, 2, 3)] for label in ("apex {}, mm", "flight {}, ms")
+    )
+    np.testing.assert_allclose(apexes, 1e3 * np.array(APEXES[:3]), rtol=0.01)
+    np.testing.assert_allclose(flights, 1e3 * np.array(FLIGHTS[:3]), atol=1)
+    # Biegert et al. state the impact speed 0.585 m/s, and show the first two apexes on the symbols.
+    assert simulated["approach, m/s"] == pytest.approx(0.585, rel=0.02)
+    np.testing.assert_allclose([simulated[f"apex {n}, mm"] for n in (1, 2)], apexes[:2], rtol=0.07)
+    for values in (measured, simulated):
+        for n in (1, 2):
+            flight = 1e3 * np.sqrt(8e-3 * values[f"apex {n}, mm"] / FREE_FALL)
+            assert values[f"flight {n}, ms"] == pytest.approx(flight, rel=0.05)
+    St = simulated["approach, m/s"] * convention("st").per_speed(conditions)
+    assert simulated["e 1"] == pytest.approx(float(legendre(np.array([St]))[0]), abs=0.1)
+    apart = abs(measured["apex 1, mm"] - simulated["apex 1, mm"]) / 3
+    assert apart / 3 < simulated["rms, d"] < 3 * apart  # an rms over flights that differ by so much at their tops
 
 
 CHECKS = {

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from restitution.commands import validate_trajectory
 from restitution.commands.console import show, show_rows
 
 if TYPE_CHECKING:
@@ -56,6 +57,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--runs", metavar="FOLDER", default="reports/runs", help="where runs are kept (reports/runs)"
     )
+    validate_trajectory.add_options(parser)
     parser.set_defaults(run=run)
 
 
@@ -72,6 +74,8 @@ def run(args: argparse.Namespace) -> int:
         _list(all_rows(Setting(Path(args.runs))))
         return 0
     folder = _folder(args.out)
+    if args.trajectory:
+        return validate_trajectory.run(args, folder)
     path, baseline = _baseline(args)
     depth = Depth(args.depth)
     again = folder / "runs" if depth is Depth.FULL and not args.only and not args.failed else None

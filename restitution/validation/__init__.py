@@ -5,4 +5,11 @@ Read :mod:`~restitution.validation.row` (what a row is), :mod:`~restitution.vali
 (what is said of a row), then how a scorecard comes about: :mod:`~restitution.validation.measure`,
 :mod:`~restitution.validation.baseline`, :mod:`~restitution.validation.scorecard`,
 :mod:`~restitution.validation.page` with :mod:`~restitution.validation.plot`.
+
+:mod:`~restitution.validation.trajectory` scores a trajectory of somebody else's solver,
+:mod:`~restitution.validation.trajectory_page` shows several; :func:`assert_trajectory` is for tests.
 """
+
+from restitution.validation.trajectory import assert_trajectory, case_of, score
+
+__all__ = ["assert_trajectory", "case_of", "score"]

@@ -25,7 +25,9 @@ def array_drag(fraction: float, cells: int) -> Values:
     }
 
 
-def steady_drag(reynolds: tuple[float, ...], diameter: int, width: float, dtype: str, quarter: bool = True) -> Values:
+def steady_drag(
+    reynolds: tuple[float, ...], diameter: int, width: float, dtype: str, quarter: bool = True
+) -> Values:
     """C_D of a held sphere at each Reynolds number in a box as long as 5/4 of its width; a quarter is computed."""
     box = Stream(width / 2, 0.75 * width, width, quarter, settling=15.0)
     return {f"Re {Re:g}": held_sphere(diameter, Re, box, dtype=dtype).coefficient for Re in reynolds}
@@ -139,7 +141,8 @@ ROWS = (
     ),
     Row(
         "steady-drag-fine", "C_D of a held sphere, 16 cells a diameter", Kind.MEASURED, _ROOS,
-        lambda: measured_drag((*_STEADY, 300.0)), _CLOUD, fine_drag, {"diameter": 16, "width": 8.0, "dtype": "float32"}, Depth.FULL,
+        lambda: measured_drag((*_STEADY, 300.0)), _CLOUD, fine_drag,
+        {"diameter": 16, "width": 8.0, "dtype": "float32"}, Depth.FULL,
     ),
     Row(
         "force-balance", "what is missing of the equations of motion, over the largest term", Kind.ANALYTICAL,

@@ -68,7 +68,8 @@ FILM_GAPS = (0.02, 0.1, 0.3, 0.45)
 ROWS = (
     Row(
         "film-force", "force of the film of case li_drop1 on a sphere that comes, over what the grid lacks",
-        Kind.ANALYTICAL, "Taylor's lubrication; Reynolds' equation for the share of a grid that ends at half a cell",
+        Kind.ANALYTICAL,
+        "Taylor's lubrication; Reynolds' equation for the share of a grid that ends at half a cell",
         tuple(near(_label(gap), 1.0, absolute=1e-6) for gap in FILM_GAPS), "quadrature", film_of_case,
         {"case": "li_drop1"},
     ),

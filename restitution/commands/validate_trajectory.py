@@ -1,0 +1,104 @@
+"""``restitution validate --trajectory``: trajectories of somebody else's solver against a record."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from restitution.commands import options
+from restitution.commands.console import show, show_rows
+
+if TYPE_CHECKING:
+    from restitution.validation.trajectory import Scored
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What is scored, against which record, and what its numbers mean."""
+    group = parser.add_argument_group("a trajectory of another solver")
+    group.add_argument(
+        "--trajectory", nargs="+", metavar="FILE", help="score these against the record of --case: time and gap, "
+        "height or velocity, in any unit (--unit, --time-unit); several stand side by side",
+    )  # fmt: skip
+    group.add_argument("--case", metavar="CASE", help="a record or a shipped case, such as gondret-st152")
+    group.add_argument("--name", nargs="+", metavar="NAME", help="what the trajectories are called (their files)")
+    group.add_argument(
+        "--grid-error", type=options.number, metavar="X", default=0.0,
+        help="relative error of the first apex by the solver's own grid, which the record's error is added to (0)",
+    )  # fmt: skip
+    group.add_argument(
+        "--first-contact", type=options.number, metavar="S",
+        help="time of the first contact in s, where it is better known: a contact stretched in time counts from "
+        "its end",
+    )  # fmt: skip
+    options.add_columns(parser)
+    options.add_track(parser)
+
+
+def run(args: argparse.Namespace, folder: Path) -> int:
+    """Score, print, write; exit status 0, 1 where a value is not the record's, 3 where there is none."""
+    from restitution.errors import Defect, InputError
+    from restitution.files import write_folder
+    from restitution.validation import trajectory_page
+    from restitution.validation.trajectory import case_of
+    from restitution.validation.verdict import FAILED, NOT_EVALUATED, Verdict
+
+    if args.case is None:
+        raise InputError(Defect("is needed: the record to hold it against, such as gondret-st152", field="--case"))
+    if not 0 <= args.grid_error < 1:
+        raise InputError(
+            Defect("must be at least 0 and below 1", field="--grid-error", value=f"{args.grid_error:g}")
+        )
+    named = args.name or [Path(file).stem for file in args.trajectory]
+    if len(named) != len(args.trajectory):
+        rule = f"names {len(named)} of {len(args.trajectory)} trajectories: one each"
+        raise InputError(Defect(rule, field="--name"))
+    case = case_of(args.case)
+    scored = [_scored(args, file, name, case) for file, name in zip(args.trajectory, named, strict=True)]
+    contents = trajectory_page.files(scored)
+    write_folder(folder, contents)
+    _show(scored)
+    for name in contents:
+        show(str(folder / name))
+    verdict = trajectory_page.verdict_of(scored)
+    return {Verdict.FAIL: FAILED, Verdict.NOT_EVALUATED: NOT_EVALUATED}.get(verdict, 0)
+
+
+def _scored(args: argparse.Namespace, file: str, name: str, case) -> Scored:
+    from restitution import datasets
+    from restitution.errors import Defect, InputError
+    from restitution.foreign import read_foreign, read_track
+    from restitution.validation.rebound import Errors
+    from restitution.validation.trajectory import score
+
+    errors = Errors(grid=args.grid_error)
+    if not Path(file).exists():
+        if file not in datasets.names():
+            raise InputError(Defect("does not exist, and no shipped record has this name", file=file))
+        return score(name, datasets.load_track(file), case, errors, args.first_contact)
+    options.check_track_columns(args.column)
+    settings = options.settings_of(args)
+    found = read_track(read_foreign(file, settings.decimal), settings, case.conditions)
+    show(f"{file}: {found.reading}" if found.reading else f"{file}: as it stands")
+    return score(name, found.track(None), case, errors, args.first_contact, found.notes)
+
+
+def _show(scored: list[Scored]) -> None:
+    from restitution.validation.trajectory_page import rows
+
+    names = [text for one in scored for text in (one.name, "")]
+    table = [
+        (str(r["label"]), str(r["record"]), *(text for cell in r["cells"] for text in _cell(cell)))
+        for r in rows(scored)
+    ]
+    show_rows(("quantity", "record", *names), table)
+    for one in scored:
+        for note in one.notes:
+            show(f"{one.name}: {note}")
+        if one.left_open:
+            show(f"{one.name}: could not be filled: {', '.join(one.left_open)}")
+
+
+def _cell(cell: dict[str, str]) -> tuple[str, str]:
+    off = cell["off"].replace("\N{NO-BREAK SPACE}", " ")
+    return (f"{cell['value']} ({off})" if off else cell["value"], cell["verdict"])

@@ -1,0 +1,123 @@
+"""Somebody else's trajectory: scored by what it is made of, refused where it cannot be the record's impact."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from restitution import datasets
+from restitution.cli import main
+from restitution.errors import InputError
+from restitution.tracks import Track
+from restitution.validation import assert_trajectory, case_of, score
+
+CASE = case_of("gondret-st152")
+APPROACH, E, FALL = 0.59, (0.81, 0.71, 0.55), 8.0
+"""m/s; of each bounce; deceleration of a flight without drag, m/s2: all is known in closed form."""
+
+
+def flown(step: float = 2e-4) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[float], list[float]]:
+    """Times, gaps, velocities, apexes and durations of a sphere that falls freely and rebounds with ``E``."""
+    time = np.arange(-0.03 + step / 3, 0.3, step)
+    speed, begin = APPROACH, 0.0
+    t = time[time < 0]
+    gap, velocity = [-((speed + FALL * t / 2) * t)], [-(speed + FALL * t)]
+    apexes, spans = [], []
+    for e in E:
+        speed *= e
+        span = 2 * speed / FALL
+        t = time[(time >= begin) & (time < begin + span)] - begin
+        gap.append(speed * t - FALL * t**2 / 2)
+        velocity.append(speed - FALL * t)
+        apexes.append(speed**2 / (2 * FALL))
+        spans.append(span)
+        begin += span
+    gap, velocity = np.concatenate(gap), np.concatenate(velocity)
+    return time[: len(gap)], gap, velocity, apexes, spans
+
+
+@pytest.mark.parametrize("kind", ["gap", "velocity"])
+def test_values_are_those_of_the_closed_form(kind):
+    time, gap, velocity, apexes, spans = flown()
+    column = {"gap": {"gap_m": gap}, "velocity": {"velocity_m_s": velocity}}[kind]
+    scored = score("theirs", Track.from_table(pd.DataFrame({"time_s": time, **column})), CASE)
+    assert scored.values["approach, m/s"] == pytest.approx(APPROACH, rel=0.01)
+    for n in (1, 2):
+        assert scored.values[f"apex {n}, mm"] == pytest.approx(1e3 * apexes[n - 1], rel=0.01)
+        assert scored.values[f"flight {n}, ms"] == pytest.approx(1e3 * spans[n - 1], rel=0.01)
+        assert scored.values[f"e {n}"] == pytest.approx(E[n - 1], abs=0.02)
+
+
+def test_a_record_agrees_with_itself():
+    scored = score("record", datasets.load_track(CASE.record), CASE)
+    assert scored.missed == []
+    assert scored.values["rms, d"] == pytest.approx(0, abs=1e-9)
+
+
+def test_what_it_does_not_reach_is_named_and_never_passes():
+    track = datasets.load_track(CASE.record)
+    until = track.time_s < 0.06  # amid the first flight
+    scored = score("short", Track(track.time_s[until], track.value[until], "gap", track.sigma), CASE)
+    assert {"apex 2, mm", "flight 1, ms", "rms, d"} <= set(scored.left_open)
+
+
+def test_another_impact_is_refused_and_says_what_may_be_wrong():
+    track = datasets.load_track(CASE.record)
+    slow = Track(8 * track.time_s, track.value, "gap", track.sigma)
+    with pytest.raises(InputError, match="unit"):
+        score("slow motion", slow, CASE)
+
+
+def test_an_assertion_names_what_fails_and_a_known_shortfall_can_be_held():
+    time, gap, *_ = flown()
+    columns = {"time_s": time, "gap_m": gap}
+    with pytest.raises(AssertionError, match="theirs: apex 1, mm"):
+        assert_trajectory(columns, "gondret-st152", name="theirs")
+    missed = score("theirs", Track.from_table(pd.DataFrame(columns)), CASE).missed
+    assert_trajectory(columns, "gondret-st152", allow=dict.fromkeys(missed, 1e3))
+    with pytest.raises(InputError, match="apex 9"):
+        assert_trajectory(columns, "gondret-st152", allow={"apex 9": 1.0})
+
+
+def test_names_of_cases_are_taken_in_any_form_and_offered():
+    assert case_of("gondret2002_st152").record == case_of("gondret_st152_10").record == CASE.record
+    with pytest.raises(InputError, match="gondret-st27"):
+        case_of("gondret-27")
+
+
+def test_the_published_simulation_is_scored_beside_ours(tmp_path, capsys):
+    time, gap, *_ = flown()
+    theirs = tmp_path / "mine.csv"
+    d, g = CASE.sphere.diameter, CASE.gravity
+    pd.DataFrame({"t": time / np.sqrt(d / g), "h": gap / d}).to_csv(theirs, index=False)
+    told = ["--column", "time_s=t", "--column", "gap_m=h", "--unit", "d", "--time-unit", "sqrt(d/g)"]
+    both = ["biegert2017_st152", str(theirs)]
+    out = tmp_path / "out"
+    status = main(["validate", "--trajectory", *both, "--case", "gondret-st152", "--out", str(out), *told])
+    assert status == 1  # without drag it flies too high
+    content = json.loads((out / "scores.json").read_text())
+    assert [t["name"] for t in content["trajectories"]] == ["biegert2017_st152", "mine"]
+    highest = 1e3 * datasets.load_track("biegert2017_st152").value[10:].max()
+    assert content["trajectories"][0]["values"]["apex 1, mm"] == pytest.approx(highest, rel=0.01)
+    assert "could not be filled" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("time_s,gap_m\n0,0.01\n0.01,nan\n", "at least 4"),
+        ("time_s,gap_m\n" + "".join(f"{t / 100},{0.01 + t / 1000}\n" for t in range(20)), "contact"),
+        ("time_s,gap_m\n" + "".join(f"{t},{1 - t / 10}\n" for t in (3, 1, 2, 0, 4)), "time"),
+    ],
+    ids=["too short", "no contact", "unsorted"],
+)
+def test_what_is_no_trajectory_is_one_line_and_nothing_is_written(rows, said, tmp_path, capsys):
+    (tmp_path / "bad.csv").write_text(rows)
+    out = tmp_path / "out"
+    call = ["validate", "--trajectory", str(tmp_path / "bad.csv"), "--case", "gondret-st152", "--out", str(out)]
+    assert main(call) == 2
+    error = capsys.readouterr().err.strip().splitlines()
+    assert len(error) == 1
+    assert said in error[0]
+    assert not out.exists() or not list(out.iterdir())
