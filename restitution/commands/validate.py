@@ -79,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     path, baseline = _baseline(args)
     depth = Depth(args.depth)
     again = folder / "runs" if depth is Depth.FULL and not args.only and not args.failed else None
-    every = all_rows(Setting(Path(args.runs), again))
+    every = all_rows(Setting(Path(args.runs), again, not args.resume))
     rows = chosen(every, depth, _only(args, folder))
     if not rows:
         show("every row of that scorecard passed")
@@ -87,7 +87,9 @@ def run(args: argparse.Namespace) -> int:
     spread = _spread(args, path, rows)
     results = _measured(args, rows, baseline, folder)
     judged = [Judged.of(row, results[name], baseline and baseline.held(row)) for name, row in rows.items()]
-    card = Scorecard(judged, args.depth, str(path) if baseline else "", args.strict)
+    card = Scorecard(
+        judged, "as named" if args.only or args.failed else args.depth, str(path) if baseline else "", args.strict
+    )
     write_folder(folder, {FILE: card.text(), "index.html": page.render(card)})
     (folder / SO_FAR).unlink(missing_ok=True)
     _show(card)

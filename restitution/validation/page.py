@@ -21,7 +21,7 @@ def render(card: Scorecard) -> str:
     return render_page(
         "validation.html.j2",
         title="Did the change spoil the solver?",
-        command=f"restitution validate --depth {card.depth}",
+        command="restitution validate",
         card=card,
         made=card.made,
         status=STATUS[card.status],

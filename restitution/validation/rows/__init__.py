@@ -18,10 +18,11 @@ from restitution.validation.row import Depth, Row
 
 @dataclass(frozen=True)
 class Setting:
-    """Where kept runs are, and where they are made again: None scores those that are kept."""
+    """Where kept runs are; where they are made again, None scoring those that are kept; whether all of them anew."""
 
     runs: Path = Path("reports/runs")
     again: Path | None = None
+    anew: bool = True
 
 
 def all_rows(setting: Setting | None = None) -> dict[str, Row]:
