@@ -65,4 +65,4 @@ def _row(cells: int, depth: Depth, missed: Callable[[], Mapping[str, str]] | Non
     )  # fmt: skip
 
 
-ROWS = (_row(32, Depth.QUICK), _row(64, Depth.DEFAULT), _row(96, Depth.FULL))
+ROWS = (_row(32, Depth.QUICK), _row(48, Depth.DEFAULT), _row(96, Depth.FULL))

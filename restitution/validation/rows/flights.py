@@ -41,7 +41,7 @@ def _row(name: str, errors: Errors, depth: Depth) -> Row:
 ROWS = (
     _row("li_drop1", Errors(), Depth.QUICK),
     _row("li_drop2_imposed", BY_LAW, Depth.QUICK),
-    _row("li_drop3", Errors(), Depth.DEFAULT),
+    _row("li_drop3", Errors(), Depth.FULL),
     _row("gondret_st27", Errors(), Depth.DEFAULT),
     _row("tencate_e3", Errors(), Depth.DEFAULT),
 )
