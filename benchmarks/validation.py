@@ -82,7 +82,7 @@ def scorecard(root: Path, rows: list[str], kernels: str = "", python: str = "", 
         return json.loads(written.read_text("utf-8"))
 
 
-def spread(rows: list[str], interpreters: list[str]) -> None:
+def spread(rows: list[str], interpreters: list[str], only: list[str] | None = None) -> None:
     """Measure what is missing of ``spread.json``: by row, label and way the change from one thread."""
     path = ROOT / FOLDER / SPREAD
     kept = json.loads(path.read_text("utf-8")) if path.is_file() else {"ways": {}, "rows": {}}
@@ -96,6 +96,8 @@ def spread(rows: list[str], interpreters: list[str]) -> None:
     ways |= {_libraries(python): {"python": python} for python in interpreters}
     known = all_rows()
     for way, how in ways.items():
+        if only and way not in only:
+            continue
         done = kept["ways"].setdefault(way, {})
         missing = [name for name in rows if done.get(name, {}).get("key") != known[name].key]
         if not missing:
@@ -171,13 +173,14 @@ def main() -> None:
     parser.add_argument("--spread", action="store_true")
     parser.add_argument("--planted", action="store_true")
     parser.add_argument("--only", nargs="+", metavar="ROW", help="these rows (all of quick and default)")
+    parser.add_argument("--way", action="append", help="with --spread: this way of running alone")
     parser.add_argument("--python", action="append", default=[], help="with --spread: another interpreter as well")
     arguments = parser.parse_args()
     known = all_rows()
     rows = arguments.only or [name for name, row in known.items() if row.depth is not Depth.FULL]
     (ROOT / FOLDER).mkdir(parents=True, exist_ok=True)
     if arguments.spread:
-        spread(rows, arguments.python)
+        spread(rows, arguments.python, arguments.way)
     if arguments.planted:
         plant([name for name in rows if not name.startswith(("rebound-", "settling-"))])
 
