@@ -73,6 +73,6 @@ ROWS = (
         tuple(near(_label(gap), 1.0, absolute=1e-6) for gap in FILM_GAPS), "quadrature", film_of_case,
         {"case": "li_drop1"},
     ),
-    _row(10, 4, 3, Depth.QUICK, (2.0, 1.5, 1.0, 0.75, 0.5, 0.4, 0.3, 0.2)),
+    _row(10, 4, 3, Depth.QUICK, (1.0, 0.75, 0.5, 0.4, 0.3)),
     _row(16, 4, 3, Depth.DEFAULT, (1.5, 1.0, 0.75, 0.5)),
 )  # fmt: skip
