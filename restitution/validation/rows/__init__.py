@@ -18,7 +18,7 @@ from restitution.validation.row import Depth, Row
 
 @dataclass(frozen=True)
 class Setting:
-    """Where kept runs are; where they are made again, None scoring those that are kept; whether all of them anew."""
+    """Where kept runs are, and where they are made ``again``, ``anew`` or gone on with; None scores the kept ones."""
 
     runs: Path = Path("reports/runs")
     again: Path | None = None

@@ -60,7 +60,7 @@ _SETTLING_WHY = "absolute accuracy of the measurement, 2 to 3 %"
 
 @dataclass(frozen=True)
 class Scored:
-    """The quantities of the kept run of a shipped case; ``again``: of one made for it, ``anew`` or gone on with."""
+    """The quantities of the kept run of a case; ``again``: of one made for it, ``anew`` or gone on with."""
 
     runs: Path
     again: bool

@@ -15,7 +15,7 @@ ZICK_HOMSY = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292}
 
 
 def array_drag(fraction: float, cells: int) -> Values:
-    """K in an array of ``cells`` and of twice as many, means over places: their limit, and the order of their errors."""
+    """K in an array of ``cells`` and of twice as many, means over places: its limit, the order of its errors."""
     exact_K = ZICK_HOMSY[fraction]
     coarse, fine = (
         sum(flows.array_drag(n, fraction, shift) for shift in flows.SHIFTS) / len(flows.SHIFTS)
@@ -127,8 +127,8 @@ ROWS = (
         "array-drag", "drag of a sphere in a periodic array, K at solid fraction 1/8", Kind.PUBLISHED,
         "Zick & Homsy, J. Fluid Mech. 115 (1982) 13, four digits",
         (near("limit", ZICK_HOMSY[0.125], relative=0.01), near("order", 2.0, absolute=0.2)),
-        "the place in the cell moves K by 3 % at 10 cells, the mean over five of them by 1 %, which an error of 7 % has "
-        "as 0.2 of an order", array_drag,
+        "the place in the cell moves K by 3 % at 10 cells, the mean over five of them by 1 %, which is 0.2 of "
+        "an order where the error is 7 %", array_drag,
         {"fraction": 0.125, "cells": 10},
     ),
     Row(

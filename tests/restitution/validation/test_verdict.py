@@ -11,7 +11,7 @@ from restitution.validation.verdict import Held, Verdict, against_baseline, agai
 PASS, MISS, FAIL, NOT = Verdict.PASS, Verdict.KNOWN_MISS, Verdict.FAIL, Verdict.NOT_EVALUATED
 
 
-def row(*references, known=None, measure=lambda: {}, case=None):
+def row(*references, known=None, measure=dict, case=None):
     return Row("r", "q", Kind.ANALYTICAL, "s", references, "t", measure, case or {}, known=known or {})
 
 
