@@ -18,7 +18,7 @@ from restitution.validation.row import Depth, Row
 
 @dataclass(frozen=True)
 class Setting:
-    """Where kept runs are, and where they are made ``again``, ``anew`` or gone on with; None scores the kept ones."""
+    """Where kept runs are, and where they are made ``again`` (None: not), ``anew`` or gone on with."""
 
     runs: Path = Path("reports/runs")
     again: Path | None = None
