@@ -2,8 +2,10 @@
 
 Impacts of e_dry exp[-K (1 + e_dry)/St], K = 18, e_dry = 0.9, St log-uniform from 15 to 500, errors of e_eff 0.01
 and quoted; both parameters are fitted. Scatter is estimated in every case but the first, since nobody knows that
-there is none, and an offset wherever there are two sources. Printed are the fraction of sets whose 68 % and 95 %
-intervals contain the truth, and the bias over the standard deviation of the estimates.
+there is none, and an offset wherever there are several sources. Printed are the fraction of sets whose 68 % and
+95 % intervals contain the truth, and the bias over the standard deviation of the estimates; below it the fraction of
+predictions that hold: of the law at a St, of one more impact of the first source, and of one of a new source.
+Each set predicts four of each, at St of its own drawn like the others, free of errors of measurement.
 
 Each set has its own stream of random numbers. What was measured is kept in ``benchmarks/coverage.json`` as sums,
 and a run adds the sets that are missing there: a long run may be stopped, and a longer one goes on.
@@ -22,15 +24,18 @@ from pathlib import Path
 
 import numpy as np
 
-from restitution.calibration import Plan, estimate, model_of
+from restitution.calibration import Fit, Plan, estimate, model_of, predict, result_of
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.calibration.reading.observations import Observations
+from restitution.calibration.result.fit_result import sources
 from restitution.errors import InputError
 from restitution.files import write_whole
 from restitution.stokes import Speed
 
 K, E_DRY, E_SIGMA = 18.0, 0.9, 0.01
 SIZES = (10, 40)
+AHEAD = 4
+"""Predictions of each kind a set."""
 OUT = Path(__file__).with_name("coverage.json")
 
 
@@ -44,6 +49,8 @@ class Case:
     limit: float = 0.0
     offset: float = 0.0
     fit_scatter: bool = True
+    sources: int = 2
+    """Where they are offset."""
 
 
 CASES = (
@@ -55,20 +62,35 @@ CASES = (
     Case("scatter, no rebound seen below 0.2", 0.03, 0.0, 0.2),
     Case("scatter, two sources offset by 0.03", 0.03, 0.0, 0.0, 0.03),
     Case("all of these", 0.03, 0.05, 0.2, 0.03),
+    Case("scatter, five sources offset by 0.03", 0.03, 0.0, 0.0, 0.03, sources=5),
+    Case("scatter, two sources offset by 0.01", 0.03, 0.0, 0.0, 0.01),
+    Case("scatter, two sources offset by 0.08", 0.03, 0.0, 0.0, 0.08),
 )
+PREDICTED = ("law", "known source", "new source")
+
+
+def law(St: np.ndarray) -> np.ndarray:
+    """The truth, without scatter and offset."""
+    return E_DRY * np.exp(-K * (1 + E_DRY) / St)
 
 
 def draw(case: Case, n: int, seed: int) -> Observations:
     """One set of impacts."""
+    return drawn(case, n, seed)[0]
+
+
+def drawn(case: Case, n: int, seed: int) -> tuple[Observations, float]:
+    """One set of impacts, and the offset of its first source."""
     stream = CASES.index(case) if case in CASES else len(CASES)
     rng = np.random.default_rng([stream, n, seed])
     St = np.exp(rng.uniform(np.log(15), np.log(500), n))
-    source = np.arange(n) % 2 if case.offset else np.zeros(n, int)
-    e = E_DRY * np.exp(-K * (1 + E_DRY) / St) + np.hypot(E_SIGMA, case.scatter) * rng.standard_normal(n)
-    e += case.offset * rng.standard_normal(2)[source]
+    source = np.arange(n) % case.sources if case.offset else np.zeros(n, int)
+    e = law(St) + np.hypot(E_SIGMA, case.scatter) * rng.standard_normal(n)
+    offsets = case.offset * rng.standard_normal(case.sources)
+    e += offsets[source]
     seen = St * (1 + case.St_error * rng.standard_normal(n))
     none, unknown = e < case.limit, np.full(n, np.nan)
-    return Observations(
+    observations = Observations(
         St=seen,
         St_sigma=case.St_error * seen,
         e=np.where(none, np.nan, e),
@@ -82,25 +104,51 @@ def draw(case: Case, n: int, seed: int) -> Observations:
         speed=Speed.FAR,
         conditions=(None,) * n,
     )
+    return observations, float(offsets[0])
 
 
-def one(task: tuple[Case, int, int]) -> list[list[float]] | None:
-    """Whether each interval contains the truth, by level, and the estimates; None where no fit was possible."""
+def predicted(case: Case, fit: Fit, offset: float, seed: int) -> list[list[list[int]]]:
+    """How many predictions hold by what is predicted and level, the first source being off by ``offset``."""
+    rng = np.random.default_rng([CASES.index(case), len(fit.likelihood.observations), seed, 1])
+    St = np.exp(rng.uniform(np.log(15), np.log(500), AHEAD))
+    scatter = case.scatter * rng.standard_normal((2, AHEAD))
+    truths = (
+        law(St),
+        law(St) + scatter[0] + offset,
+        law(St) + scatter[1] + case.offset * rng.standard_normal(AHEAD),
+    )
+    result = result_of(fit)
+    known, new = (predict(result, St, source=source) for source in (sources(result)[0], None))
+    bands = (new.law, known.impact, new.impact)
+    return [
+        [int(np.sum((ends[:, 0] <= t) & (t <= ends[:, 1]))) for ends in band.values()]
+        for t, band in zip(truths, bands, strict=True)
+    ]
+
+
+def one(task: tuple[Case, int, int]) -> list | None:
+    """Whether each interval contains the truth, by level, the estimates, and how many predictions hold; None where
+    no fit was possible.
+    """
     case, n, seed = task
     plan = Plan(model_of("eq4_exponential"), e_dry="free", scatter=case.fit_scatter)
+    observations, offset = drawn(case, n, seed)
     try:
-        found = estimate(plan, draw(case, n, seed), intervals=("K", "e_dry")).maximum
+        fit = estimate(plan, observations, intervals=("K", "e_dry"))
     except InputError as error:
         print(f"{case.name}, n = {n}, set {seed}: {error}", file=sys.stderr)
         return None
-    truths = np.array([K, E_DRY])
+    found, truths = fit.maximum, np.array([K, E_DRY])
     held = [(found.intervals[x][:2, 0] <= truths) & (truths <= found.intervals[x][:2, 1]) for x in LEVELS]
-    return [*(h.astype(float).tolist() for h in held), found.values[:2].tolist()]
+    ahead = predicted(case, fit, offset, seed)
+    return [*(h.astype(float).tolist() for h in held), found.values[:2].tolist(), ahead]
 
 
 @dataclass
 class Cell:
-    """Sums over the first ``sets`` sets of one case: intervals that held, errors of the estimates (K, e_dry)."""
+    """Sums over the first ``sets`` sets of one case: intervals that held, errors of the estimates (K, e_dry), and
+    predictions that held, by what is predicted.
+    """
 
     case: str
     n: int
@@ -110,17 +158,21 @@ class Cell:
     held_95: tuple[int, int] = (0, 0)
     error: tuple[float, float] = (0.0, 0.0)
     error_squared: tuple[float, float] = (0.0, 0.0)
+    ahead_68: tuple[int, int, int] = (0, 0, 0)
+    ahead_95: tuple[int, int, int] = (0, 0, 0)
 
     def add(self, results: list) -> None:
         """Take in further sets, in their order."""
         self.sets += len(results)
         self.failed += sum(r is None for r in results)
-        for in_68, in_95, values in (r for r in results if r is not None):
+        for in_68, in_95, values, ahead in (r for r in results if r is not None):
             error = (values[0] - K, values[1] - E_DRY)
             self.held_68 = tuple(int(a + b) for a, b in zip(self.held_68, in_68, strict=True))
             self.held_95 = tuple(int(a + b) for a, b in zip(self.held_95, in_95, strict=True))
             self.error = tuple(a + b for a, b in zip(self.error, error, strict=True))
             self.error_squared = tuple(a + b**2 for a, b in zip(self.error_squared, error, strict=True))
+            self.ahead_68 = tuple(a + b[0] for a, b in zip(self.ahead_68, ahead, strict=True))
+            self.ahead_95 = tuple(a + b[1] for a, b in zip(self.ahead_95, ahead, strict=True))
 
     @property
     def bias(self) -> list[float]:
@@ -135,8 +187,14 @@ class Cell:
         percent = [100 * x / m for x in (*self.held_68, *self.held_95)]
         numbers = f"{percent[0]:11.1f} {percent[1]:6.1f}  {percent[2]:11.1f} {percent[3]:6.1f}"
         failed = f"  ({self.failed} not fitted)" if self.failed else ""
+        m *= AHEAD
+        ahead = "; ".join(
+            f"{what} {100 * a / m:.1f} / {100 * b / m:.1f}"
+            for what, a, b in zip(PREDICTED, self.ahead_68, self.ahead_95, strict=True)
+        )
         return (
             f"{self.case:36} {self.n:3} {self.sets:5}  {numbers}  {self.bias[0]:11.2f} {self.bias[1]:6.2f}{failed}"
+            f"\n    predictions: {ahead}"
         )
 
 

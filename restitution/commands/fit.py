@@ -74,9 +74,8 @@ def run(args: argparse.Namespace) -> None:
     chain = None
     if args.posterior:
         from restitution.calibration.estimation.posterior import sample
-        from restitution.calibration.result.fit_result import chain_of
 
-        chain = chain_of(sample(fit.likelihood, fit.maximum, args.seed, progress=sys.stderr.isatty()))
+        chain = sample(fit.likelihood, fit.maximum, args.seed, progress=sys.stderr.isatty())
     result = result_of(fit, chain)
     written = []
     if args.report:

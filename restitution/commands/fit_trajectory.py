@@ -35,7 +35,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> None:
     """Fit, print, and write what was asked for."""
-    from restitution.calibration.result.fit_result import chain_of
     from restitution.calibration.result.fit_summary import describe
     from restitution.calibration.trajectories.doubts import of_records
     from restitution.calibration.trajectories.fit import FEW, Measured, fit_law
@@ -76,12 +75,12 @@ def run(args: argparse.Namespace) -> None:
     fit = fit_law(measured, plans[best], how)
     if args.strict:
         refuse(fit.doubts)
-    result = fit.result()
+    chain = None
     if args.posterior:
         from restitution.calibration.estimation.posterior import sample
 
         chain = sample(fit.fit.likelihood, fit.fit.maximum, args.seed, progress=sys.stderr.isatty())
-        result = result.model_copy(update={"posterior": chain_of(chain)})
+    result = fit.result(chain)
     written = []
     if args.report:
         from restitution.report.fits import trajectories as report
@@ -114,7 +113,7 @@ def _show_records(measured: Measured) -> None:
 
 def _rank(measured: Measured, plans: dict, how: Reading) -> str:
     """Every reading, with the wake and without; the best one under the model that the frames prefer."""
-    from restitution.calibration.result.fit_result import result_of
+    from restitution.calibration.estimation.maximum import LEVELS
     from restitution.calibration.result.ranking import rank
     from restitution.calibration.trajectories.fit import law_fit, observations
 
@@ -124,12 +123,14 @@ def _rank(measured: Measured, plans: dict, how: Reading) -> str:
         ranking: Ranking = rank(list(plans.items()), o)
         rows = []
         for row in ranking.rows():
-            s, p = row.score, result_of(law_fit(plans[row.law], o)).parameters[0]
-            ends = [f"{a:.2f} to {b:.2f}" for a, b in p.intervals.values()]
+            s, best_of = row.score, law_fit(plans[row.law], o).maximum
+            ends = ["{:.2f} to {:.2f}".format(*best_of.intervals[level][0]) for level in LEVELS]
             behind = "best" if row.best else f"{row.behind:.1f} +- {row.behind_error:.1f}"
             out = "" if s.elpd_loso is None else f"{s.elpd_loso:.1f}"
             apart = "yes" if row.separated else ""
-            rows.append((row.law, f"{p.value:.2f}", *ends, f"{s.log_likelihood:.1f}", behind, out, apart))
+            rows.append(
+                (row.law, f"{best_of.values[0]:.2f}", *ends, f"{s.log_likelihood:.1f}", behind, out, apart)
+            )
         show(f"{'with' if wake else 'without'} the wake of the approach, {len(o)} impacts:")
         heads = ("law", "K", "68 %", "95 %", "ln L", "elpd behind", "elpd, record out", "separated")
         show_rows(heads, rows, right=("K", "ln L"))

@@ -63,6 +63,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="COLUMN=NAME",
         help="of separate parameters",
     )
+    parser.add_argument(
+        "--source",
+        metavar="NAME",
+        help="the laboratory or record of the fit that the one impact is of (default: a new one)",
+    )
     parser.set_defaults(run=run)
 
 
@@ -117,7 +122,7 @@ def run(args: argparse.Namespace) -> None:
     levels = options.once("--level", args.level)
     edge = result.edge_d if args.edge is None else args.edge
     if edge == result.edge_d:
-        prediction = predict(result, St, args.e_dry, conditions, levels)
+        prediction = predict(result, St, args.e_dry, conditions, levels, args.source)
     elif conditions is None:
         raise InputError(
             f"--edge {edge:g}: the fit is of {result.edge_d:g} d; the conversion needs --fluid and --sphere, or "
@@ -125,7 +130,7 @@ def run(args: argparse.Namespace) -> None:
         )
     else:
         speeds = St / stokes_of(result, np.ones(1), conditions)[0]
-        prediction = predict_at(result, speeds, edge, conditions, args.e_dry, levels)
+        prediction = predict_at(result, speeds, edge, conditions, args.e_dry, levels, args.source)
     rows = []
     for i, x in enumerate(St):
         ends = [

@@ -2,5 +2,5 @@
 
 Read :mod:`.parameters`, :mod:`.rebound_model` and :mod:`.formula` (what is fitted), :mod:`.plan` (what is free),
 :mod:`.likelihood`, :mod:`.first_guess` and :mod:`.maximum`, :mod:`.identifiability` (what the data cannot tell),
-:mod:`.small_sample` and :mod:`.posterior` (intervals), :mod:`.fitting` (all of it).
+:mod:`.small_sample`, :mod:`.draws` and :mod:`.posterior` (intervals), :mod:`.fitting` (all of it).
 """

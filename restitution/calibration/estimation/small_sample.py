@@ -65,23 +65,25 @@ class Restriction:
 
     def __call__(self, values: NDArray) -> float:
         """1/2 ln of the determinant."""
-        information = self._information(values)
+        information = self.information(values)
         if len(information) == 1:  # numpy's takes longer than all else here
             return 0.5 * math.log(abs(information[0, 0])) if information[0, 0] else -math.inf
         return 0.5 * np.linalg.slogdet(information)[1]
 
     def scaled(self, values: NDArray) -> NDArray:
         """The matrix with a unit diagonal, whose condition says whether the parameters can be told apart."""
-        information = self._information(values)
+        information = self.information(values)
         scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
         return information / np.outer(scale, scale)
 
-    def _deviations(self, values: NDArray) -> tuple[float, float]:
+    def deviations(self, values: NDArray) -> tuple[float, float]:
+        """Scatter and offset among the values; zero where they are not estimated."""
         tau, omega = (0.0 if place is None else abs(values[place]) for place in self.places)
         return tau, omega
 
-    def _information(self, values: NDArray) -> NDArray:
-        tau, omega = self._deviations(values)
+    def information(self, values: NDArray) -> NDArray:
+        """J^T V^-1 J + Lambda."""
+        tau, omega = self.deviations(values)
         w = 1 / np.maximum(self.variance + tau**2, 1e-24)
         weighted = w[:, None] * self.J
         information = self.J.T @ weighted + self.precision
@@ -90,6 +92,16 @@ class Restriction:
             shrink = omega**2 / (1 + omega**2 * (w @ self._members))
             information = information - (sums * shrink) @ sums.T
         return information
+
+    def score(self, values: NDArray, r: NDArray) -> NDArray:
+        """J^T V^-1 r of the residuals of the measured impacts."""
+        tau, omega = self.deviations(values)
+        w = 1 / np.maximum(self.variance + tau**2, 1e-24)
+        score = self.J.T @ (w * r)
+        if omega > 0:
+            shrink = omega**2 / (1 + omega**2 * (w @ self._members))
+            score = score - (self.J.T @ (w[:, None] * self._members)) @ (shrink * ((w * r) @ self._members))
+        return score
 
     @cached_property
     def _members(self) -> NDArray:
@@ -101,7 +113,7 @@ class Restriction:
         n, p = self.J.shape
         if n > MOST_IMPACTS:
             return np.full(p, np.inf)
-        tau, omega = self._deviations(values)
+        tau, omega = self.deviations(values)
         same = (self.sources[:, None] == self.sources).astype(float)
         V = np.diag(np.maximum(self.variance + tau**2, 1e-24)) + omega**2 * same
         parts = [part for part, place in zip((np.eye(n), same), self.places, strict=True) if place is not None]

@@ -1,5 +1,6 @@
 """What is kept of a fit, and what it is good for.
 
 Read :mod:`.fit_result`, :mod:`.fit_file`, :mod:`.residuals`, :mod:`.fit_summary` (the fit), :mod:`.fitted_law`,
-:mod:`.prediction`, :mod:`.ranking`, and :mod:`.design` with :mod:`.release` (what to measure next).
+:mod:`.kept_draws`, :mod:`.bands` and :mod:`.prediction`, :mod:`.ranking`, and :mod:`.design` with :mod:`.release`
+(what to measure next).
 """

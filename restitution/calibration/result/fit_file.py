@@ -29,7 +29,7 @@ def read_fit(path: str | Path) -> FitResult:
     """The fit in a JSON file; raises :class:`InputError` naming all that is wrong with it."""
     result = read_record(path, FitResult)
     found = [finding for rule in (_law, _parameters, _ranges, _points) for finding in rule(result)]
-    found = found or [*_names(result), *_covariance(result), *_chain(result)]
+    found = found or [*_names(result), *_covariance(result), *_chain(result), *_draws(result)]
     if found:
         raise InputError(
             *(
@@ -153,5 +153,22 @@ def _chain(result: FitResult) -> Iterator[Finding]:
     for field in ("median", "autocorrelation_time"):
         if len(getattr(chain, field)) != n:
             yield f"posterior.{field}", len(getattr(chain, field)), f"must have {n} numbers"
-    if not chain.draws or any(len(row) != n for row in chain.draws):
+    if any(len(row) != n for row in chain.draws) or not (chain.draws or result.draws):
         yield "posterior.draws", len(chain.draws), f"must be rows of {n} numbers, at least one"
+
+
+def _draws(result: FitResult) -> Iterator[Finding]:
+    own = result.draws
+    if own is None:
+        return
+    n = len(result.parameters) + len(own.sources)
+    if not own.rows or any(len(row) != n for row in own.rows):
+        yield "draws.rows", len(own.rows), f"must be rows of {n} numbers, at least one"
+        return
+    if len(own.weights) != len(own.rows) or min(own.weights) < 0 or not 0 < sum(own.weights) < 2:
+        yield "draws.weights", len(own.weights), "must be one a row, none negative, with the sum 1"
+    for k, p in enumerate(result.parameters):
+        low, high = min(row[k] for row in own.rows), max(row[k] for row in own.rows)
+        slack = _ROUND_OFF * 10 * max(abs(low), abs(high))
+        if low < p.bounds[0] - slack or high > p.bounds[1] + slack:
+            yield f"draws.{p.name}", f"{low:g} to {high:g}", f"leave the bounds {p.bounds[0]:g} to {p.bounds[1]:g}"

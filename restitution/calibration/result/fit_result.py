@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
+from restitution.calibration.estimation.draws import draw, finished
 from restitution.calibration.estimation.fitting import Fit
 from restitution.calibration.estimation.likelihood import OFFSET
 from restitution.calibration.estimation.maximum import LEVELS
@@ -74,7 +75,20 @@ class Chain(Record):
     acceptance: float
     seed: int
     priors: dict[str, str]
-    draws: tuple[tuple[float, ...], ...]
+    draws: tuple[tuple[float, ...], ...] = ()
+    """Of files of earlier versions; now the fit has them."""
+
+
+class DrawsRecord(Record):
+    """Weighted draws from the posterior: a row has a value for each parameter, then an offset for each source.
+
+    ``effective``: how many independent draws they are worth.
+    """
+
+    sources: tuple[str, ...]
+    rows: tuple[tuple[float, ...], ...]
+    weights: tuple[float, ...]
+    effective: float
 
 
 class TrajectoryRecord(Record):
@@ -127,6 +141,8 @@ class FitResult(Showing, Record):
     robust: bool
     points: tuple[Point, ...]
     posterior: Chain | None = None
+    draws: DrawsRecord | None = None
+    """What predictions are made of; a file without them was written by an earlier version."""
     trajectories: tuple[TrajectoryRecord, ...] = ()
     """Of a fit to whole trajectories."""
     files: dict[str, str]
@@ -167,13 +183,11 @@ class FitResult(Showing, Record):
 
 
 MOST_DRAWS = 1000
-"""Draws that are kept in a record."""
+"""Draws of a chain that are kept in a record."""
 
 
 def chain_of(posterior: Posterior) -> Chain:
-    """The record of a posterior, with some of its draws, evenly spaced."""
-    draws = posterior.draws
-    kept = draws[np.linspace(0, len(draws) - 1, min(len(draws), MOST_DRAWS)).astype(int)]
+    """The record of a posterior, without its draws."""
     return Chain(
         names=tuple(p.name for p in posterior.parameters),
         median=tuple(map(float, posterior.median)),
@@ -186,17 +200,35 @@ def chain_of(posterior: Posterior) -> Chain:
         acceptance=posterior.acceptance,
         seed=posterior.seed,
         priors={p.name: str(p.prior) for p in posterior.parameters},
-        draws=tuple(tuple(float(f"{x:.6g}") for x in row) for row in kept),
     )
 
 
-def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
+def draws_of(fit: Fit, posterior: Posterior | None) -> DrawsRecord:
+    """Draws about the maximum, or some of those of a chain, evenly spaced."""
+    if posterior is None:
+        own = draw(fit.likelihood, fit.maximum)
+    else:
+        values = posterior.draws[
+            np.linspace(0, len(posterior.draws) - 1, min(len(posterior.draws), MOST_DRAWS)).astype(int)
+        ]
+        own = finished(fit.likelihood, values, np.ones(len(values)))
+    rows = np.concatenate([own.values, own.offsets], axis=1)
+    return DrawsRecord(
+        sources=own.sources,
+        rows=tuple(tuple(float(f"{x:.6g}") for x in row) for row in rows),
+        weights=tuple(float(f"{w:.6g}") for w in own.weights),
+        effective=own.effective,
+    )
+
+
+def result_of(fit: Fit, posterior: Posterior | None = None) -> FitResult:
     """The record of a fit: what ``fit.json`` holds, and what :func:`~restitution.calibration.predict` takes.
 
     Parameters
     ----------
     fit : of :func:`~restitution.calibration.estimate`.
-    posterior : a chain of draws, for bands by the posterior instead of the profile.
+    posterior : of :func:`~restitution.calibration.estimation.posterior.sample`, whose draws then are those of
+        predictions; else draws weighted about the maximum, from the same posterior.
     """
     likelihood, maximum, o = fit.likelihood, fit.maximum, fit.likelihood.observations
     model = likelihood.model
@@ -243,7 +275,8 @@ def result_of(fit: Fit, posterior: Chain | None = None) -> FitResult:
         e_dry_range=(float(e_dry.min()), float(e_dry.max())) if len(e_dry) else (0.0, 1.0),
         robust=likelihood.robust,
         points=points_of(fit),
-        posterior=posterior,
+        posterior=None if posterior is None else chain_of(posterior),
+        draws=draws_of(fit, posterior),
         files=dict(o.files),
         versions={name: metadata.version(name) for name in _LIBRARIES},
         notes=fit.notes,

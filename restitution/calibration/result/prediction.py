@@ -1,9 +1,10 @@
 """e_eff at given conditions, with its interval: that of the law, and that of one more impact.
 
-Linear propagation of the covariance of the parameters, J C J^T, with Student's t of the least degrees of freedom
-of them. One more impact, by another particle in another set-up, has scatter and source offset on top, each with
-its own t: a standard deviation tau known to sigma_tau has tau^2/(2 sigma_tau^2) degrees of freedom; half-widths
-add in squares, which is exact for normal errors. Where the fit has a posterior, its draws take the place of all.
+Both are central intervals of the posterior, over the draws that a fit keeps (:mod:`..estimation.draws`, or a
+chain). One more impact has the scatter of the draw on top, and of a new source its offset as well; of a source that
+was fitted, the offset that its impacts leave open. Many Stokes numbers share the intervals of some of them: how far
+an end lies from the value, in standard errors by the linear propagation J C J^T, changes slowly with St and is
+interpolated.
 """
 
 from __future__ import annotations
@@ -13,16 +14,20 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri, stdtrit
 
 from restitution.bounce.edges import passage
-from restitution.calibration.estimation.likelihood import OFFSET, SCATTER
 from restitution.calibration.estimation.maximum import LEVELS
+from restitution.calibration.result.bands import noisy_quantiles, quantiles
 from restitution.calibration.result.fit_result import FitResult, parameter_values
+from restitution.calibration.result.kept_draws import kept, one_more
 from restitution.calibration.showing import Showing, Table
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.stokes import Speed, StokesNumber, film_edge
+
+KNOTS = 256
+"""Stokes numbers whose intervals are computed; of more they are interpolated."""
+_PARTS = tuple(0.5 * (1 + sign * level) for level in LEVELS for sign in (-1, 1))
 
 
 @dataclass(frozen=True, repr=False)
@@ -58,7 +63,7 @@ def predict(
     e_dry: float | None = None,
     conditions: Conditions | None = None,
     levels: Mapping[str, str] | None = None,
-    seed: int = 0,
+    source: str | None = None,
 ) -> Prediction:
     """e_eff of the fitted law, with intervals for the mean and for one more impact.
 
@@ -69,7 +74,7 @@ def predict(
     e_dry : where it was not estimated; else taken from ``conditions``.
     conditions : fluid and sphere.
     levels : which level of separate parameters, as ``{"material": "steel"}``.
-    seed : of the draws.
+    source : the fitted source (laboratory, record) of the one more impact; None: a new one.
 
     Returns
     -------
@@ -77,21 +82,28 @@ def predict(
 
     Raises
     ------
-    InputError : where e_dry or a level is missing or unknown.
+    InputError : where e_dry, a level or the source is missing or unknown.
     """
     law = Evaluation(result, e_dry, conditions, levels)
     St = np.atleast_1d(np.asarray(St, float))
     value = law(St, law.values)
     J = law.jacobian(St)
     sigma = np.sqrt(np.einsum("ij,jk,ik->i", J, law.covariance, J))
-    if result.posterior is not None:
-        intervals, more = _from_draws(law, St, result, seed)
-    else:
-        half = {x: sigma * quantile(x, law.freedom) for x in LEVELS}
-        noise = {x: np.hypot(*(_half_width(result, name, x) for name in (SCATTER, OFFSET))) for x in LEVELS}
-        intervals = {f"{x:.0%}": _around(value, half[x]) for x in LEVELS}
-        more = {f"{x:.0%}": _around(value, np.hypot(half[x], noise[x])) for x in LEVELS}
-    return Prediction(St, value, sigma, intervals, more, _warnings(result, St, law.e_dry))
+    draws = kept(result)
+    more, weights = one_more(draws, result, source), draws.weights
+    rows = draws.values[:, [draws.names.index(name) for name in law.full_names]]
+    knots = np.unique(St)
+    if len(knots) > KNOTS:
+        knots = knots[np.linspace(0, len(knots) - 1, KNOTS).astype(int)]
+    f = np.stack([law(knots, row) for row in rows], axis=1)
+    whole = np.sqrt(sigma**2 + weights @ more.noise**2 + weights @ (more.offset - weights @ more.offset) ** 2)
+    tables = (
+        (quantiles(f, weights, _PARTS), sigma),
+        (noisy_quantiles(f + more.offset, weights, more.noise, _PARTS), whole),
+    )
+    at_knots = law(knots, law.values)
+    intervals, one = (_by_level(_spread_out(knots, ends, at_knots, St, value, scale)) for ends, scale in tables)
+    return Prediction(St, value, sigma, intervals, one, _warnings(result, St, law.e_dry))
 
 
 def predict_at(
@@ -101,6 +113,7 @@ def predict_at(
     conditions: Conditions,
     e_dry: float | None = None,
     levels: Mapping[str, str] | None = None,
+    source: str | None = None,
 ) -> Prediction:
     """:func:`predict` for impact speeds in m/s at another ``edge`` of the film (diameters) than the fit's.
 
@@ -123,7 +136,7 @@ def predict_at(
     there = predict(
         result,
         stokes_of(result, np.array([p.v_narrow if wider else p.v_wide for p in passages]), conditions),
-        e_dry, conditions, levels,
+        e_dry, conditions, levels, source,
     )  # fmt: skip
 
     def here(e: NDArray) -> NDArray:
@@ -183,7 +196,6 @@ class Evaluation:
         index = [[q.name for q in result.parameters].index(p.name) for p in used]
         whole = np.array([[np.nan if x is None else x for x in row] for row in result.covariance])
         self.covariance = whole[np.ix_(index, index)] if index else np.zeros((0, 0))
-        self.freedom = min((p.degrees_of_freedom or np.inf for p in used), default=np.inf)
         self.ratio = _ratio(result, self.model.convention, conditions)
 
     def __call__(self, St: NDArray, values: NDArray) -> NDArray:
@@ -211,19 +223,25 @@ class Evaluation:
         return J
 
 
-def quantile(level: float, freedom: float) -> float:
-    """Half the width of a central interval of Student's t, or of the normal, in standard errors."""
-    half = 0.5 * (1 + level)
-    return float(ndtri(half) if np.isinf(freedom) else stdtrit(freedom, half))
+def _by_level(ends: NDArray) -> dict[str, NDArray]:
+    """Low and high ends (n, 2) by level, of ends in the order of the parts."""
+    return {f"{level:.0%}": ends[:, 2 * k : 2 * k + 2] for k, level in enumerate(LEVELS)}
 
 
-def _half_width(result: FitResult, name: str, level: float) -> float:
-    """Of the scatter or the source offset of one more impact; 0 where it was not estimated, or is 0."""
-    deviation = next((p for p in result.parameters if p.name == name), None)
-    if deviation is None or not deviation.value > 0:
-        return 0.0
-    freedom = 1.0 if deviation.sigma is None else max(0.5 * (deviation.value / deviation.sigma) ** 2, 1.0)
-    return deviation.value * quantile(level, freedom)
+def _spread_out(
+    knots: NDArray, ends: NDArray, at_knots: NDArray, St: NDArray, value: NDArray, scale: NDArray
+) -> NDArray:
+    """Ends at all St from those at the knots; ``scale`` is the standard error of each St."""
+    at_least = 1e-12 + 1e-6 * float(np.max(scale, initial=0.0))
+    scale = np.maximum(scale, at_least)
+    own = np.interp(knots, *_rising(St, scale))
+    away = (ends - at_knots[:, None]) / own[:, None]
+    return value[:, None] + scale[:, None] * np.stack([np.interp(St, knots, x) for x in away.T], axis=1)
+
+
+def _rising(x: NDArray, y: NDArray) -> tuple[NDArray, NDArray]:
+    order = np.argsort(x)
+    return x[order], y[order]
 
 
 def _ratio(result: FitResult, convention: str, conditions: Conditions | None) -> float:
@@ -232,30 +250,6 @@ def _ratio(result: FitResult, convention: str, conditions: Conditions | None) ->
     if conditions is None and high - low < 1e-9 * high:
         return low
     return StokesNumber(1.0, result.stokes_convention).to(convention, conditions).value
-
-
-def _around(value: NDArray, half: NDArray) -> NDArray:
-    return np.stack([value - half, value + half], axis=1)
-
-
-def _from_draws(
-    law: Evaluation, St: NDArray, result: FitResult, seed: int
-) -> tuple[dict[str, NDArray], dict[str, NDArray]]:
-    """Central intervals of the law and of one more impact over the draws of the posterior."""
-    chain, rng = result.posterior, np.random.default_rng(seed)
-    draws = np.array(chain.draws)
-    where = [chain.names.index(name) for name in law.full_names]
-    f = np.stack([law(St, row[where]) for row in draws])
-    noise = np.zeros(len(draws))
-    for name in (SCATTER, OFFSET):
-        if name in chain.names:
-            noise = np.hypot(noise, draws[:, chain.names.index(name)])
-    more = f + (noise * rng.standard_normal(len(draws)))[:, None]  # one impact a draw, moved along St
-
-    def central(x: NDArray, level: float) -> NDArray:
-        return np.quantile(x, [0.5 * (1 - level), 0.5 * (1 + level)], axis=0).T
-
-    return {f"{x:.0%}": central(f, x) for x in LEVELS}, {f"{x:.0%}": central(more, x) for x in LEVELS}
 
 
 def _warnings(result: FitResult, St: NDArray, e_dry: float) -> tuple[str, ...]:

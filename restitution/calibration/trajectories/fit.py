@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from restitution.bounce import Closures, OwnWake
 from restitution.calibration.estimation.fitting import Fit, estimate
 from restitution.calibration.estimation.plan import Plan
+from restitution.calibration.estimation.posterior import Posterior
 from restitution.calibration.reading.impact_checks import check_physical
 from restitution.calibration.reading.observations import Observations, join
 from restitution.calibration.reading.reading import Reading
@@ -126,9 +127,9 @@ class TrajectoryFit:
         """The records under the model that the fit is based on."""
         return self.measured.trajectories[self.wake]
 
-    def result(self) -> FitResult:
+    def result(self, posterior: Posterior | None = None) -> FitResult:
         """What is kept: the fit, and beside it every record's unknowns, noise and distances."""
-        base = result_of(self.fit)
+        base = result_of(self.fit, posterior)
         records = tuple(self._record(t) for t in self.trajectories)
         notes = (*base.notes, self.wake_in_words(), *within_the_film(self.trajectories))
         doubts = tuple(map(str, self.doubts))
