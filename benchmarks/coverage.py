@@ -3,8 +3,8 @@
 Impacts of e_dry exp[-K (1 + e_dry)/St], K = 18, e_dry = 0.9, St log-uniform from 15 to 500, errors of e_eff 0.01
 and quoted; both parameters are fitted. Scatter is estimated in every case but the first, since nobody knows that
 there is none, and an offset wherever there are several sources. Printed are the fraction of sets whose 68 % and
-95 % intervals contain the truth, and the bias over the standard deviation of the estimates; below it the fraction of
-predictions that hold: of the law at a St, of one more impact of the first source, and of one of a new source.
+95 % intervals contain the truth, and the bias over the standard deviation of the estimates; below it the fraction
+of predictions that hold: of the law at a St, of one more impact of the first source, and of one of a new source.
 Each set predicts four of each, at St of its own drawn like the others, free of errors of measurement.
 
 Each set has its own stream of random numbers. What was measured is kept in ``benchmarks/coverage.json`` as sums,

@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> None:
         from restitution.calibration.estimation.posterior import sample
 
         chain = sample(fit.likelihood, fit.maximum, args.seed, progress=sys.stderr.isatty())
-    result = result_of(fit, chain)
+    result = result_of(fit, chain, influence=bool(args.report or args.out))
     written = []
     if args.report:
         from restitution.report.fits import report

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from restitution.commands import options
 
 if TYPE_CHECKING:
+    from restitution.calibration.estimation.earlier import Earlier
     from restitution.calibration.estimation.plan import Plan
     from restitution.calibration.reading.reading import Reading
 
@@ -70,12 +71,20 @@ def add_plan(parser: argparse.ArgumentParser) -> None:
         "--bounds", action="append", default=[], type=_bounds, metavar="NAME=LOW:HIGH", help="of a parameter"
     )
     parser.add_argument(
+        "--start",
+        action="append",
+        default=[],
+        type=options.assignment,
+        metavar="NAME=VALUE",
+        help="where the search for a parameter begins (default: several places within its bounds)",
+    )
+    parser.add_argument(
         "--prior",
         action="append",
         default=[],
         type=_prior,
         metavar="NAME=MEAN+-SIGMA",
-        help="an independent value",
+        help="an independent value; or FIT.json: an earlier fit of the law to other data, correlations included",
     )
     parser.add_argument(
         "--separate",
@@ -91,6 +100,11 @@ def add_plan(parser: argparse.ArgumentParser) -> None:
         choices=("auto", "none", "source"),
         default="auto",
         help="an offset a source: if there is more than one (auto)",
+    )
+    parser.add_argument(
+        "--no-log-variance",
+        action="store_true",
+        help="leave ln of the variances out, as York's line does; with --no-scatter and --offsets none",
     )
     parser.add_argument("--robust", action="store_true", help="Student's t errors, for outliers")
 
@@ -108,7 +122,10 @@ def _end(text: str) -> float:
     return float(text) if text in ("inf", "-inf") else options.number(text)
 
 
-def _prior(text: str) -> tuple[str, tuple[float, float]]:
+def _prior(text: str) -> tuple[str, tuple[float, float] | None]:
+    """A parameter with mean and error, or the file of a fit with None."""
+    if text.lower().endswith(".json"):
+        return text, None
     parts = re.fullmatch(r"([A-Za-z_]\w*)=([^+]+)\+-(.+)", text)
     try:
         return parts[1], (options.number(parts[2]), options.number(parts[3]))
@@ -157,7 +174,9 @@ def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, s
     from restitution.errors import Defect, InputError
 
     bounds, fixed = options.once("--bounds", args.bounds), options.once("--fix", args.fix)
-    priors = {n: _normal(n, *value) for n, value in options.once("--prior", args.prior).items()}
+    given = options.once("--prior", args.prior)
+    priors = {n: _normal(n, *value) for n, value in given.items() if value is not None}
+    earlier = _earlier([n for n, value in given.items() if value is None], strict)
     for name in sorted(fixed.keys() & ({*args.free} | priors.keys())):
         raise InputError(Defect("is fixed, and asked to be free or given a prior", field=name))
     model = model_of(law, bounds, law_stokes)
@@ -172,12 +191,31 @@ def plan_of(args: argparse.Namespace, law: str, law_stokes: str | None = None, s
         free=frozenset(own(dict.fromkeys(args.free))),
         bounds=own(bounds),
         priors=own(priors),
+        starts=own(options.once("--start", args.start)),
         e_dry=_e_dry(args.e_dry),
         separate=own(options.once("--separate", args.separate)),
         scatter=not args.no_scatter,
         offsets={"auto": None, "none": False, "source": True}[args.offsets],
         robust=args.robust,
+        log_variance=not args.no_log_variance,
+        earlier=earlier,
     )
+
+
+def _earlier(files: Sequence[str], strict: bool) -> Earlier | None:
+    """The one earlier fit that is a prior; of one law, so that it goes with one law alone."""
+    from restitution.calibration.result.chained import earlier_of
+    from restitution.calibration.result.fit_file import read_fit
+    from restitution.errors import Defect, InputError
+
+    if not files:
+        return None
+    if len(files) > 1 or not strict:
+        rule = (
+            "a prior is one fit, chained with the fits before it" if strict else "is of one law: name it by --law"
+        )
+        raise InputError(Defect(rule, field="--prior", value=files[-1]))
+    return earlier_of(read_fit(files[0]), files[0])
 
 
 def _e_dry(text: str | None):

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.calibration.estimation.formula import SYMPY
 from restitution.calibration.result.fit_file import read_fit
 from restitution.calibration.result.fit_result import FORMAT, FitResult, parameter_values
 from restitution.calibration.result.prediction import predict, stokes_of
@@ -26,7 +27,6 @@ from restitution.stokes import Speed
 
 _AGREEMENT = 1e-6
 """Of kept predictions with the law at the kept parameters; text and platforms differ by less than 1e-12."""
-_FUNCTIONS = {"exp": "exp", "log": "log", "sqrt": "sqrt", "tanh": "tanh", "abs": "Abs", "min": "Min", "max": "Max"}
 
 
 def read_unedited(path: str | Path) -> FitResult:
@@ -133,7 +133,7 @@ def fit_closure(path: str | Path, levels: Mapping[str, str] | None = None) -> Cl
         slope=lambda St, dry=fixed_dry: computed(1, St, dry),
         closed=record is None or record.formula is not None,
         upper={"e_dry": 1.0},
-        functions={} if record else _FUNCTIONS,
+        functions={} if record else SYMPY,
         identity=(
             f"fit: {Path(path).name} sha256 {digest}",
             *hashes,

@@ -1,6 +1,7 @@
 """From observations to parameters and their intervals.
 
-Read :mod:`.parameters`, :mod:`.rebound_model` and :mod:`.formula` (what is fitted), :mod:`.plan` (what is free),
-:mod:`.likelihood`, :mod:`.first_guess` and :mod:`.maximum`, :mod:`.identifiability` (what the data cannot tell),
+Read :mod:`.parameters`, :mod:`.rebound_model` and :mod:`.formula` (what is fitted), :mod:`.earlier` (what is known
+beforehand), :mod:`.plan` (what is free), :mod:`.likelihood`, :mod:`.first_guess` and :mod:`.maximum`,
+:mod:`.curvature` (exact derivatives), :mod:`.identifiability` and :mod:`.soundness` (what the data cannot tell),
 :mod:`.small_sample`, :mod:`.draws` and :mod:`.posterior` (intervals), :mod:`.fitting` (all of it).
 """

@@ -125,15 +125,16 @@ class _Proposal:
         J = likelihood.jacobian(self.best)[:, self.law] * slope
         known = np.maximum(variance - tau**2, 0.0)
         self.r, self.z, self.J_z, self.v_z = (o.e - f)[seen], (o.upper - f)[~seen], J[~seen], known[~seen]
-        precision = prior_precision(own) * slope**2
+        earlier = likelihood.jointly.precision[np.ix_(self.law, self.law)]
+        precision = (np.diag(prior_precision(own)) + earlier) * np.outer(slope, slope)
         places = tuple(names.index(n) if n in names else None for n in (SCATTER, OFFSET))
-        self.measured = Restriction(J[seen], known[seen], likelihood.sources[seen], np.diag(precision), places)
+        self.measured = Restriction(J[seen], known[seen], likelihood.sources[seen], precision, places)
         self.pull_of_priors = np.array(
             [
                 (p.prior.mean - self.best[j]) / p.prior.sigma**2 * s if isinstance(p.prior, Normal) else 0.0
                 for j, p, s in zip(self.law, own, slope, strict=True)
             ]
-        )
+        ) - slope * (earlier @ likelihood.jointly.away(self.best)[self.law])
         self.shift, self.spread = np.zeros(len(self.law)), np.eye(len(self.law))
         self._near: dict[tuple[float, ...], tuple[NDArray, NDArray]] = {}
         self.edges = [np.linspace(0.0, self._reach(j), _CELLS[len(self.deviations)] + 1) for j in self.deviations]

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.calibration.estimation.curvature import Curvature, sharpened
 from restitution.calibration.estimation.first_guess import first_guess
 from restitution.calibration.estimation.identifiability import check_bounds, check_flat
 from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
 from restitution.calibration.estimation.maximum import LEVELS, Maximum, Thresholds, maximise
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.estimation.small_sample import Restriction, threshold
+from restitution.calibration.estimation.soundness import of_estimate
 from restitution.calibration.reading.impact_checks import doubts_about
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.doubts import Doubt
+
+_LOWER = 1e-6
+"""By how much -ln L must be lower for another maximum to be one."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -33,8 +38,11 @@ class Fit(Showing):
 
     @property
     def doubts(self) -> tuple[Doubt, ...]:
-        """What is doubtful about the impacts."""
-        return doubts_about(self.likelihood.observations, self.plan.known_e_dry)
+        """What is doubtful about the impacts, and about the estimate itself."""
+        about = doubts_about(self.likelihood.observations, self.plan.known_e_dry)
+        earlier = self.plan.earlier
+        twice = () if earlier is None else tuple(earlier.doubts(self.likelihood.observations))
+        return (*about, *twice, *of_estimate(self.maximum, self.freedom))
 
     def shown(self) -> Table:
         """The estimates with their standard errors; intervals and all else are in its result."""
@@ -73,7 +81,7 @@ def estimate(
     likelihood = plan.likelihood(observations)
     parameters = likelihood.parameters
     warm = near is not None
-    start, steps = (near.values, near.sigma) if warm else (first_guess(likelihood), None)
+    start, steps = (near.values, near.sigma) if warm else (first_guess(likelihood, plan.starts), None)
     if not warm:
         check_flat(likelihood, start)
     restriction = None
@@ -87,11 +95,13 @@ def estimate(
     def function(values: NDArray) -> float:
         return likelihood(values) + (restriction(values) if restriction else 0.0)
 
+    curvature = Curvature.of(likelihood, restriction) if covariance or intervals else None
     freedom = np.full(len(parameters), np.inf)
     if not intervals:
         best = maximise(function, parameters, start, covariance=covariance, steps=steps)
+        best = sharpened(best, function, curvature) if covariance else best
         return Fit(plan, likelihood, best, freedom, restriction is not None, ())
-    best = maximise(function, parameters, start)
+    best = sharpened(maximise(function, parameters, start), function, curvature)
     mean = np.array([p.mean for p in parameters], bool)
     check_bounds(best)
     if restriction is not None:
@@ -101,7 +111,12 @@ def estimate(
         level: [threshold(level, nu) if want else None for nu, want in zip(freedom, wanted, strict=True)]
         for level in LEVELS
     }
-    best = maximise(function, parameters, best.values, Thresholds(rises))
+    profiled = maximise(function, parameters, best.values, Thresholds(rises), steps=best.sigma)
+    if profiled.negative_log < best.negative_log - _LOWER:  # a better maximum on the way along the profile
+        profiled = sharpened(profiled, function, curvature)
+    else:
+        profiled = replace(best, intervals=profiled.intervals, open_ends=profiled.open_ends, calls=profiled.calls)
+    best = profiled
     return Fit(plan, likelihood, best, freedom, restriction is not None, _notes(likelihood, best))
 
 
@@ -119,6 +134,10 @@ def _notes(likelihood: Likelihood, best: Maximum) -> tuple[str, ...]:
         if p.name == OFFSET and len(likelihood.source_names) < 5:
             few = len(likelihood.source_names)
             notes.append(f"{few} sources say little of how sources differ: intervals are wide for it")
+    if likelihood.earlier is not None:
+        notes.append(f"prior of {', '.join(likelihood.earlier.names)}: the fit {likelihood.earlier.origin}")
+    if not likelihood.log_variance:
+        notes.append("without ln of the variances, as York's line: a steeper law buys misfit where St has errors")
     if likelihood.robust:
         notes.append("robust: Student's t with 4 degrees of freedom, no correction for small samples")
     return tuple(notes)

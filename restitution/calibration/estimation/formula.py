@@ -1,6 +1,7 @@
 """A law of the user's own as a formula: parsed against a whitelist, evaluated here, never run as Python.
 
-The grammar: numbers, names, + - * / **, unary signs, and the functions exp, log, sqrt, tanh, abs, min, max. ``St``
+The grammar: numbers, names, + - * / **, unary signs, and the functions exp, log, sqrt, tanh, sin, cos, atan, erf,
+gamma, abs, min, max. ``St``
 and ``e_dry`` are what the law is of; every other name is a parameter. Python's parser makes the tree, each node of
 which must be of a known kind; everything else is refused with its place in the text. The tree is evaluated with
 value and slope in St together, so that the slope is exact (forward differentiation).
@@ -17,6 +18,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import digamma, erf, gamma
 
 from restitution.calibration.estimation.parameters import Parameter, scale_of
 from restitution.errors import Defect, InputError
@@ -30,6 +32,7 @@ MOST_NODES = 200
 """Numbers, names and operations."""
 LARGEST_EXPONENT = 50.0
 """Beyond it a power of St leaves the range of numbers."""
+_TWO_OVER_ROOT_PI = 2 / math.sqrt(math.pi)
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,29}")
 Pair = tuple[Any, Any]
 """A value and its slope in St."""
@@ -203,6 +206,20 @@ def _through(function: Callable, derivative: Callable) -> Callable[[Pair], Pair]
     return apply
 
 
+def symbolic(text: str, symbols: Mapping[str, Any]) -> Any:
+    """A formula that has passed the grammar, or that of a law, as a sympy expression in ``symbols``."""
+    import sympy
+
+    # Every name in it is bound here: none means a sympy object.
+    known = {name: getattr(sympy, own) for name, own in SYMPY.items()}
+    return sympy.sympify(text, locals=known | dict(symbols))
+
+
+SYMPY = {
+    "exp": "exp", "log": "log", "sqrt": "sqrt", "tanh": "tanh", "sin": "sin", "cos": "cos", "atan": "atan",
+    "erf": "erf", "gamma": "gamma", "abs": "Abs", "min": "Min", "max": "Max",
+}  # fmt: skip
+"""Names of the functions of a formula as sympy knows them."""
 _BINARY: dict[type, Callable[[Pair, Pair], Pair]] = {
     ast.Add: lambda a, b: (a[0] + b[0], a[1] + b[1]),
     ast.Sub: lambda a, b: (a[0] - b[0], a[1] - b[1]),
@@ -215,6 +232,11 @@ _FUNCTIONS: dict[str, tuple[int, int, Callable[..., Pair]]] = {
     "log": (1, 1, _through(np.log, lambda x, y: np.divide(1.0, x))),
     "sqrt": (1, 1, _through(np.sqrt, lambda x, y: np.divide(0.5, y))),
     "tanh": (1, 1, _through(np.tanh, lambda x, y: 1 - y**2)),
+    "sin": (1, 1, _through(np.sin, lambda x, y: np.cos(x))),
+    "cos": (1, 1, _through(np.cos, lambda x, y: -np.sin(x))),
+    "atan": (1, 1, _through(np.arctan, lambda x, y: 1 / (1 + np.square(x)))),
+    "erf": (1, 1, _through(erf, lambda x, y: _TWO_OVER_ROOT_PI * np.exp(-np.square(x)))),
+    "gamma": (1, 1, _through(gamma, lambda x, y: y * digamma(x))),
     "abs": (1, 1, _through(np.abs, lambda x, y: np.sign(x))),
     "min": (2, 5, lambda *pairs: _choose(np.less_equal, *pairs)),
     "max": (2, 5, lambda *pairs: _choose(np.greater_equal, *pairs)),

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from restitution.calibration.estimation.likelihood import SCATTER, Likelihood
 from restitution.calibration.estimation.maximum import Maximum
-from restitution.calibration.estimation.parameters import Flat, Normal
+from restitution.calibration.estimation.parameters import Normal
 from restitution.errors import Defect, InputError
 
 
@@ -16,7 +16,7 @@ def check_data(likelihood: Likelihood) -> None:
     o = likelihood.observations
     measured = o.take(~o.censored)
     mean = [p for p in likelihood.parameters if p.mean]
-    free = sum(isinstance(p.prior, Flat) for p in mean)
+    free = sum(not likelihood.known_beforehand(p) for p in mean)
     named = ", ".join(p.name for p in mean)
     file = next(iter(o.files), None)
     if not len(o):
@@ -62,11 +62,11 @@ def check_flat(likelihood: Likelihood, values: NDArray) -> None:
     for place, j in enumerate(mean):
         p = parameters[j]
         reach = (p.bounds[1] - p.bounds[0]) if p.scale == "linear" else values[j]
-        if isinstance(p.prior, Flat) and np.max(np.abs(J[:, place])) * reach < 1e-9:
+        if not likelihood.known_beforehand(p) and np.max(np.abs(J[:, place])) * reach < 1e-9:
             rule = "the likelihood does not depend on it here: it is flat; fix it, or choose another start or law"
             raise InputError(Defect(rule, field=p.name, value=f"{values[j]:.4g}"))
     size = np.sqrt(np.sum(J**2, axis=0))
-    free = [i for i, j in enumerate(mean) if isinstance(parameters[j].prior, Flat)]
+    free = [i for i, j in enumerate(mean) if not likelihood.known_beforehand(parameters[j])]
     if len(free) > 1:
         _, singular, directions = np.linalg.svd(J[:, free] / size[free], full_matrices=False)
         if singular[-1] < 1e-5 * singular[0]:

@@ -33,7 +33,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln, log_ndtr, stdtr
 
-from restitution.calibration.estimation.parameters import Parameter
+from restitution.calibration.estimation.earlier import Earlier, Placed
+from restitution.calibration.estimation.parameters import Normal, Parameter
 from restitution.calibration.estimation.rebound_model import ReboundModel
 from restitution.calibration.reading.observations import Observations
 
@@ -71,6 +72,7 @@ class _AtLaw(NamedTuple):
     """What follows from the law, whatever scatter and offsets are: of all impacts, and of both kinds apart."""
 
     f: NDArray
+    slope: NDArray
     of_errors: NDArray
     """Variance by the errors alone."""
     r: NDArray
@@ -97,11 +99,25 @@ class Likelihood:
     robust: bool = False
     log_variance: bool = True
     """Off only to reproduce least-squares solutions that leave the term out."""
+    earlier: Earlier | None = None
+    """A prior of several parameters, by a fit to other data."""
 
     def __call__(self, values: Sequence[float] | NDArray) -> float:
-        """-ln L; infinity where the law has no finite value."""
+        """-ln L, with the prior of an earlier fit; infinity where the law has no finite value."""
         values = np.asarray(values, float)
-        law, (tau, omega) = self._at_law(values), self._deviations(values)
+        return self._of_impacts(values) + (0.0 if self.earlier is None else self.jointly(values))
+
+    @cached_property
+    def jointly(self) -> Placed:
+        """The prior of the earlier fit on all parameters."""
+        return Placed.of(self.earlier, [p.name for p in self.parameters])
+
+    def known_beforehand(self, p: Parameter) -> bool:
+        """Whether a parameter has a prior that stands for measurements."""
+        return isinstance(p.prior, Normal) or (self.earlier is not None and p.name in self.earlier.names)
+
+    def _of_impacts(self, values: NDArray) -> float:
+        law, (tau, omega) = self._at_law(values), self.deviations(values)
         if not (law.finite and math.isfinite(tau**2)):
             return np.inf
         r, v = law.r, np.maximum(law.r_variance + tau**2, _LEAST_VARIANCE)
@@ -131,8 +147,13 @@ class Likelihood:
 
     def moments(self, values: NDArray) -> tuple[NDArray, NDArray, float]:
         """F and the variance of each impact without the offset, and the standard deviation of the offsets."""
-        law, (tau, omega) = self._at_law(values), self._deviations(values)
+        law, (tau, omega) = self._at_law(values), self.deviations(values)
         return law.f, np.maximum(law.of_errors + tau**2, _LEAST_VARIANCE), omega
+
+    def law_values(self, values: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """F, its slope in the law's own St, and the variance of each impact without the offset."""
+        law, (tau, _) = self._at_law(values), self.deviations(values)
+        return law.f, law.slope, law.of_errors + tau**2
 
     def _at_law(self, values: NDArray) -> _AtLaw:
         """What follows from the law at these values; kept while a search moves scatter and offsets alone."""
@@ -143,14 +164,16 @@ class Likelihood:
         return kept[key]
 
     def _evaluated(self, values: NDArray) -> _AtLaw:
-        given, o, seen = self._by_impact(values), self.observations, self._seen
+        given, o, seen = self.by_impact(values), self.observations, self._seen
         e_dry = given.pop("e_dry")
-        f, slope = self.model(self._St, e_dry, {n: x for n, x in given.items() if n not in (SCATTER, OFFSET)})
-        variance = residual_variance(slope, o.e_sigma, self._St_sigma, o.correlation)
+        f, slope = self.model(self.law_St, e_dry, {n: x for n, x in given.items() if n not in (SCATTER, OFFSET)})
+        variance = residual_variance(slope, o.e_sigma, self.law_St_sigma, o.correlation)
         finite = bool(np.isfinite(f).all() and np.isfinite(variance).all())
-        return _AtLaw(f, variance, (o.e - f)[seen], variance[seen], (o.upper - f)[~seen], variance[~seen], finite)
+        return _AtLaw(
+            f, slope, variance, (o.e - f)[seen], variance[seen], (o.upper - f)[~seen], variance[~seen], finite
+        )
 
-    def _deviations(self, values: NDArray) -> tuple[float, float]:
+    def deviations(self, values: NDArray) -> tuple[float, float]:
         """Standard deviations of the scatter and of the offsets."""
         tau, omega = (fixed if at is None else float(values[at]) for at, fixed in self._deviation_places)
         return tau, omega
@@ -224,15 +247,22 @@ class Likelihood:
         return _Sources(seen, censored, np.flatnonzero(~several), tuple(dict.fromkeys(censored[several].tolist())))
 
     @cached_property
-    def _St(self) -> NDArray:
-        return self.observations.St * self.observations.ratio_to(self.model.convention)
+    def ratio(self) -> NDArray:
+        """St of the law over that of the data, impact by impact."""
+        return self.observations.ratio_to(self.model.convention)
 
     @cached_property
-    def _St_sigma(self) -> NDArray:
-        return self.observations.St_sigma * self.observations.ratio_to(self.model.convention)
+    def law_St(self) -> NDArray:
+        """St in the law's own convention."""
+        return self.observations.St * self.ratio
 
     @cached_property
-    def _places(self) -> list[tuple[str, int | NDArray]]:
+    def law_St_sigma(self) -> NDArray:
+        """Errors of St in the law's own convention."""
+        return self.observations.St_sigma * self.ratio
+
+    @cached_property
+    def places(self) -> list[tuple[str, int | NDArray]]:
         """For each quantity, where its value stands: an index, or one index an impact if it is separate."""
         position = {p.name: j for j, p in enumerate(self.parameters)}
         shared = [(name, j) for name, j in position.items() if "[" not in name]
@@ -242,8 +272,9 @@ class Likelihood:
             parted.append((name, np.array([position[f"{name}[{level}]"] for level in levels])[group]))
         return shared + parted
 
-    def _by_impact(self, values: NDArray) -> dict[str, float | NDArray]:
-        return dict(self.fixed) | {name: values[place] for name, place in self._places}
+    def by_impact(self, values: NDArray) -> dict[str, float | NDArray]:
+        """Value of each quantity, a number or one an impact."""
+        return dict(self.fixed) | {name: values[place] for name, place in self.places}
 
     def _log_density(self, r: NDArray, variance: NDArray) -> NDArray:
         if self.robust:

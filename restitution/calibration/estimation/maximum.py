@@ -36,6 +36,8 @@ class Maximum:
     intervals: Mapping[float, NDArray] = field(default_factory=dict)
     open_ends: Mapping[float, NDArray] = field(default_factory=dict)
     """True where an interval ends at a bound of the parameter, not because the likelihood has fallen."""
+    condition: float | None = None
+    """Of the curvature scaled to a unit diagonal, greatest over least eigenvalue; None where it is not exact."""
 
     @property
     def sigma(self) -> NDArray:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.calibration.estimation.earlier import Earlier
 from restitution.calibration.estimation.identifiability import check_data
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER, Likelihood
 from restitution.calibration.estimation.parameters import Flat, HalfNormal, Normal, Parameter
@@ -37,11 +38,17 @@ class Plan:
     free: frozenset[str] = frozenset()
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     priors: Mapping[str, Normal] = field(default_factory=dict)
+    starts: Mapping[str, float] = field(default_factory=dict)
+    """Where the search begins; of the others it finds its own."""
     e_dry: str | float | Normal | None = None
     separate: Mapping[str, str] = field(default_factory=dict)
     scatter: bool = True
     offsets: bool | None = None
     robust: bool = False
+    log_variance: bool = True
+    """Off: without the term ln var_i, as York's line and ODRPACK have it; with known errors alone."""
+    earlier: Earlier | None = None
+    """A fit to other data as the prior of the law's parameters."""
 
     @property
     def known_e_dry(self) -> float | None:
@@ -81,7 +88,23 @@ class Plan:
             )
         if self.offsets if self.offsets is not None else sources > 1:
             parameters.append(Parameter(OFFSET, 0.03, (0.0, 1.0), "1", "even", HalfNormal(TYPICAL_OFFSET), False))
-        likelihood = Likelihood(self.model, observations, tuple(parameters), fixed, separate, self.robust)
+        earlier = self.earlier
+        if earlier is not None:
+            earlier.check(self.model.text, observations)
+            earlier = earlier.of([p.name for p in parameters if p.mean])
+            for name in self.priors.keys() & set(earlier.names):
+                rule = f"has a prior of its own, and one by {earlier.origin}: leave one of them out"
+                raise InputError(Defect(rule, field=name))
+            parameters = earlier.without_own_priors(parameters)
+        if not self.log_variance and (self.robust or any(not p.mean for p in parameters)):
+            rule = (
+                "without ln of the variances nothing holds scatter, offsets and robust errors down: it goes with "
+                "known errors alone (--no-scatter --offsets none)"
+            )
+            raise InputError(Defect(rule, field="--no-log-variance"))
+        likelihood = Likelihood(
+            self.model, observations, tuple(parameters), fixed, separate, self.robust, self.log_variance, earlier
+        )
         check_data(likelihood)
         return likelihood
 
@@ -90,12 +113,14 @@ class Plan:
         if "e_dry" in self.separate and e_dry is None:
             rule = "is not estimated but stated by the data or the caller: --e-dry free estimates it by levels"
             raise InputError(Defect(rule, field="e_dry"))
+        for name in self.starts.keys() & (self.fixed.keys() | ({"e_dry"} if e_dry is None else set())):
+            raise InputError(Defect("is not estimated: it has no start", field=name))
         for name in self.separate.keys() & self.fixed.keys():
             raise InputError(Defect("is fixed: it cannot differ by levels", field=name))
 
     def _known_names(self) -> None:
         names = [p.name for p in self.model.parameters]
-        for given in (*self.fixed, *self.free, *self.bounds, *self.priors, *self.separate):
+        for given in (*self.fixed, *self.free, *self.bounds, *self.priors, *self.starts, *self.separate):
             if given not in (*names, "e_dry"):
                 rule = f"is not a parameter of {self.model.name}; it has: {', '.join([*names, 'e_dry'])}"
                 raise InputError(Defect(rule, field=given))
@@ -104,8 +129,11 @@ class Plan:
         """A parameter with the caller's bounds and prior."""
         bounds = self.bounds.get(p.name, p.bounds)
         prior = self.priors.get(p.name, p.prior)
-        start = prior.mean if isinstance(prior, Normal) else p.start
+        start = self.starts.get(p.name, prior.mean if isinstance(prior, Normal) else p.start)
         if not bounds[0] <= start <= bounds[1]:
+            if p.name in self.starts:
+                rule = f"starts outside its bounds [{bounds[0]:g}, {bounds[1]:g}]"
+                raise InputError(Defect(rule, field=p.name, value=f"{start:g}"))
             start = 0.5 * (bounds[0] + bounds[1])
         return replace(
             p, bounds=bounds, prior=prior if p.scale != "log" or prior != Flat() else Flat(True), start=start

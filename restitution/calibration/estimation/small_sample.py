@@ -58,8 +58,8 @@ class Restriction:
         tau = 0.0 if places[0] is None else values[places[0]]
         known = np.maximum(variance - tau**2, 0.0)[seen]
         J = likelihood.jacobian(values)[seen][:, mean]
-        precision = prior_precision(likelihood.parameters)[mean]
-        restriction = cls(J, known, likelihood.sources[seen], np.diag(precision), places)
+        precision = (np.diag(prior_precision(likelihood.parameters)) + likelihood.jointly.precision)[mean][:, mean]
+        restriction = cls(J, known, likelihood.sources[seen], precision, places)
         singular = np.linalg.cond(restriction.scaled(values)) > 1e12
         return None if singular else restriction
 

@@ -1,6 +1,6 @@
 """What is kept of a fit, and what it is good for.
 
-Read :mod:`.fit_result`, :mod:`.fit_file`, :mod:`.residuals`, :mod:`.fit_summary` (the fit), :mod:`.fitted_law`,
-:mod:`.kept_draws`, :mod:`.bands` and :mod:`.prediction`, :mod:`.ranking`, and :mod:`.design` with :mod:`.release`
-(what to measure next).
+Read :mod:`.fit_result`, :mod:`.fit_file`, :mod:`.residuals`, :mod:`.influence`, :mod:`.fit_summary` (the fit),
+:mod:`.fitted_law`, :mod:`.kept_draws`, :mod:`.bands` and :mod:`.prediction`, :mod:`.chained` (the prior of a later
+fit), :mod:`.ranking`, and :mod:`.design` with :mod:`.release` (what to measure next).
 """

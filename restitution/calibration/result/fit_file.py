@@ -172,3 +172,7 @@ def _draws(result: FitResult) -> Iterator[Finding]:
         slack = _ROUND_OFF * 10 * max(abs(low), abs(high))
         if low < p.bounds[0] - slack or high > p.bounds[1] + slack:
             yield f"draws.{p.name}", f"{low:g} to {high:g}", f"leave the bounds {p.bounds[0]:g} to {p.bounds[1]:g}"
+        elif p.mean and not low - slack <= p.value <= high + slack and p.value not in p.bounds:
+            yield f"draws.{p.name}", f"{low:g} to {high:g}", f"are not about the estimate {p.value:g}"
+    if any(abs(x) > LARGEST for row in own.rows for x in row):
+        yield "draws.rows", None, f"must lie within {LARGEST:g}"

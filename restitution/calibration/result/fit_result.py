@@ -16,6 +16,7 @@ from restitution.calibration.estimation.likelihood import OFFSET
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.calibration.estimation.posterior import Posterior
 from restitution.calibration.estimation.rebound_model import LawModel, ReboundModel, model_of
+from restitution.calibration.result.influence import influences
 from restitution.calibration.result.residuals import Goodness, Point, goodness_of, number_or_none, points_of
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Record
@@ -221,7 +222,7 @@ def draws_of(fit: Fit, posterior: Posterior | None) -> DrawsRecord:
     )
 
 
-def result_of(fit: Fit, posterior: Posterior | None = None) -> FitResult:
+def result_of(fit: Fit, posterior: Posterior | None = None, influence: bool = False) -> FitResult:
     """The record of a fit: what ``fit.json`` holds, and what :func:`~restitution.calibration.predict` takes.
 
     Parameters
@@ -229,6 +230,7 @@ def result_of(fit: Fit, posterior: Posterior | None = None) -> FitResult:
     fit : of :func:`~restitution.calibration.estimate`.
     posterior : of :func:`~restitution.calibration.estimation.posterior.sample`, whose draws then are those of
         predictions; else draws weighted about the maximum, from the same posterior.
+    influence : whether each impact is left out in turn, to tell what it does to the estimate.
     """
     likelihood, maximum, o = fit.likelihood, fit.maximum, fit.likelihood.observations
     model = likelihood.model
@@ -274,7 +276,7 @@ def result_of(fit: Fit, posterior: Posterior | None = None) -> FitResult:
         law_stokes_ratio=(float(ratio.min()), float(ratio.max())),
         e_dry_range=(float(e_dry.min()), float(e_dry.max())) if len(e_dry) else (0.0, 1.0),
         robust=likelihood.robust,
-        points=points_of(fit),
+        points=points_of(fit, influences(fit) if influence else ()),
         posterior=None if posterior is None else chain_of(posterior),
         draws=draws_of(fit, posterior),
         files=dict(o.files),

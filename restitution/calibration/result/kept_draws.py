@@ -19,7 +19,7 @@ _STAND_IN = 1024
 
 
 class OneMore(NamedTuple):
-    """What one more impact has besides the law, an entry a draw: its offset, and its noise's standard deviation."""
+    """What one more impact has besides the law, an entry a draw: its offset, its noise's standard deviation."""
 
     offset: NDArray
     noise: NDArray

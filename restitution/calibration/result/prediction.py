@@ -1,10 +1,10 @@
 """e_eff at given conditions, with its interval: that of the law, and that of one more impact.
 
 Both are central intervals of the posterior, over the draws that a fit keeps (:mod:`..estimation.draws`, or a
-chain). One more impact has the scatter of the draw on top, and of a new source its offset as well; of a source that
-was fitted, the offset that its impacts leave open. Many Stokes numbers share the intervals of some of them: how far
-an end lies from the value, in standard errors by the linear propagation J C J^T, changes slowly with St and is
-interpolated.
+chain). One more impact has the scatter of the draw on top, and of a new source its offset as well; of a source
+that was fitted, the offset that its impacts leave open. Many Stokes numbers share the intervals of some of them:
+how far an end lies from the value, in standard errors by the linear propagation J C J^T, changes slowly with St
+and is interpolated.
 """
 
 from __future__ import annotations
@@ -236,7 +236,10 @@ def _spread_out(
     scale = np.maximum(scale, at_least)
     own = np.interp(knots, *_rising(St, scale))
     away = (ends - at_knots[:, None]) / own[:, None]
-    return value[:, None] + scale[:, None] * np.stack([np.interp(St, knots, x) for x in away.T], axis=1)
+    found = value[:, None] + scale[:, None] * np.stack([np.interp(St, knots, x) for x in away.T], axis=1)
+    # An estimate on a bound has all draws on one side: the interval then begins at it.
+    lower = np.array(_PARTS) < 0.5
+    return np.where(lower, np.minimum(found, value[:, None]), np.maximum(found, value[:, None]))
 
 
 def _rising(x: NDArray, y: NDArray) -> tuple[NDArray, NDArray]:

@@ -15,16 +15,17 @@ are three or more.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
 from restitution.calibration.estimation.fitting import Fit, estimate
-from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
+from restitution.calibration.estimation.likelihood import Likelihood
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.reading.observations import Observations
+from restitution.calibration.result.influence import fit_without
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.errors import ConventionError, InputError
 
@@ -170,24 +171,16 @@ def score(
     k, n = len(fit.maximum.parameters), len(observations)
     log_likelihood = -plain.maximum.negative_log
     sources = fit.likelihood.sources
-    loo = np.array([_left_out(plan, fit, np.arange(n) == i) for i in range(n)])
+    loo = np.array([_left_out(fit, np.arange(n) == i) for i in range(n)])
     levels = np.unique(sources)
-    loso = np.array([_left_out(plan, fit, sources == s) for s in levels]) if len(levels) > 1 else np.zeros(0)
+    loso = np.array([_left_out(fit, sources == s) for s in levels]) if len(levels) > 1 else np.zeros(0)
     aic, bic = 2 * k - 2 * log_likelihood, k * np.log(n) - 2 * log_likelihood
     return Score(label, fit, k, log_likelihood, aic, bic, loo, loso, _neighbours(fit, seed))
 
 
-def _left_out(plan: Plan, whole: Fit, out: NDArray) -> float:
+def _left_out(whole: Fit, out: NDArray) -> float:
     """Log predictive density of the impacts ``out`` by a fit to the others."""
-    rest = whole.likelihood.observations.take(~out)
-    # Whether sources are offset is a property of the model, not of what is left out.
-    names = [p.name for p in whole.maximum.parameters]
-    plan = replace(plan, offsets=OFFSET in names)
-    # A level of a separate parameter may be gone with what is left out.
-    near = whole.maximum if not plan.separate or len(plan.likelihood(rest).parameters) == len(names) else None
-    held = not any(p.mean for p in whole.maximum.parameters)  # nothing of the law is open: no covariance needed
-    fit = estimate(plan, rest, intervals=False, near=near, covariance=not held)
-    return predictive(fit, whole.likelihood, out)
+    return predictive(fit_without(whole, out), whole.likelihood, out)
 
 
 def predictive(fit: Fit, whole: Likelihood, out: NDArray) -> float:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
+from pydantic import Field
 from scipy.special import chdtrc
 
 from restitution.calibration.estimation.fitting import Fit
@@ -31,6 +33,8 @@ class Point(Record):
     residual: float | None
     sigma: float
     pull: float | None
+    influence: dict[str, float] = Field(default_factory=dict)
+    """By how many standard errors the impact moves each parameter of the law; empty where that was not asked."""
 
 
 class Goodness(Record):
@@ -46,7 +50,8 @@ class Goodness(Record):
     log_likelihood_of: Literal["maximum", "restricted maximum"]
 
 
-def points_of(fit: Fit) -> tuple[Point, ...]:
+def points_of(fit: Fit, influence: Sequence[dict[str, float]] = ()) -> tuple[Point, ...]:
+    """The impacts of a fit, with their influences where these are given."""
     likelihood, o = fit.likelihood, fit.likelihood.observations
     f, variance, omega = likelihood.moments(fit.maximum.values)
     offsets = likelihood.offsets(fit.maximum.values) if omega > 0 else {}
@@ -73,6 +78,7 @@ def points_of(fit: Fit) -> tuple[Point, ...]:
                 residual=residual,
                 sigma=math.sqrt(variance[i]),
                 pull=residual / math.sqrt(variance[i]) if seen else None,
+                influence=influence[i] if influence else {},
             )
         )
     return tuple(points)

@@ -67,5 +67,6 @@ C = Language(
     let=lambda name, value: f"const double {name} = {value};",
     end=lambda condition, value: (f"if ({condition}) return {value};",),
     give=lambda value: f"return {value};",
+    lacks=("polygamma",),
     file=_file,
 )

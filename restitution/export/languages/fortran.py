@@ -95,5 +95,6 @@ FORTRAN = Language(
     let=lambda name, value: f"{name} = {value}",
     end=lambda condition, value: (f"if ({condition}) then", f"  y = {value}", "  return", "end if"),
     give=lambda value: f"y = {value}",
+    lacks=("polygamma",),
     file=_file,
 )

@@ -55,5 +55,6 @@ JAVASCRIPT = Language(
     let=lambda name, value: f"const {name} = {value};",
     end=lambda condition, value: (f"if ({condition}) return {value};",),
     give=lambda value: f"return {value};",
+    lacks=("erf", "gamma", "polygamma"),
     file=_file,
 )

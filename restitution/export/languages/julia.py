@@ -54,5 +54,6 @@ JULIA = Language(
     let=lambda name, value: f"{name} = {value}",
     end=lambda condition, value: (f"if {condition}", f"    return {value}", "end"),
     give=lambda value: f"return {value}",
+    lacks=("erf", "gamma", "polygamma"),
     file=_file,
 )

@@ -51,6 +51,8 @@ class Language:
     """Lines that end the function with a value where a condition holds."""
     give: Callable[[str], str]
     file: Callable[[Language, Source], str]
+    lacks: tuple[str, ...] = ()
+    """Functions of a formula, as sympy knows them, that it has not without further libraries."""
 
     def comments(self, lines: Sequence[str]) -> str:
         """Lines as comments."""

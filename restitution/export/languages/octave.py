@@ -59,5 +59,6 @@ OCTAVE = Language(
     let=lambda name, value: f"{name} = {value};",
     end=lambda condition, value: (f"if {condition}", f"  y = {value};", "  return", "end"),
     give=lambda value: f"y = {value};",
+    lacks=("polygamma",),
     file=_file,
 )

@@ -84,5 +84,6 @@ PYTHON = Language(
     let=lambda name, value: f"{name} = {value}",
     end=lambda condition, value: (f"if {condition}:", f"    return {value}"),
     give=lambda value: f"return {value}",
+    lacks=("polygamma",),
     file=_file,
 )

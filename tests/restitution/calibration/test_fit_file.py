@@ -43,6 +43,8 @@ def places(content, here=()):
         content.items() if isinstance(content, dict) else enumerate(content) if isinstance(content, list) else ()
     )
     for key, value in inner:
+        if here[:1] == ("draws",) and isinstance(key, int) and key > 1:
+            break  # draws are many and alike
         yield (*here, key)
         yield from places(value, (*here, key))
 
@@ -114,6 +116,9 @@ EDITS = {
     "an unknown convention": lambda c: c["law"].update(convention="xx"),
     "an unknown one of the data": lambda c: c.update(stokes_convention="xx"),
     "an unknown speed": lambda c: c.update(speed_definition="xx"),
+    "draws of another estimate": lambda c: parameter(c, value=80.0),
+    "fewer weights than draws": lambda c: c["draws"]["weights"].pop(),
+    "a draw that is too short": lambda c: c["draws"]["rows"][0].pop(),
     "a range that falls": lambda c: c.update(stokes_range=[100.0, 10.0]),
 }
 

@@ -5,13 +5,14 @@ import warnings
 
 import numpy as np
 import pytest
-from scipy import integrate, stats
+from scipy import integrate, optimize, special, stats
 
 from restitution import laws
 from restitution.calibration import estimate, predict, result_of
 from restitution.calibration.estimation.likelihood import STUDENT
 from restitution.calibration.estimation.maximum import Thresholds, maximise
 from restitution.calibration.estimation.parameters import Normal, Parameter
+from restitution.calibration.estimation.plan import TYPICAL_SCATTER
 from restitution.calibration.estimation.posterior import sample
 from restitution.calibration.estimation.small_sample import threshold
 from restitution.calibration.result.ranking import predictive
@@ -171,21 +172,71 @@ def test_student_intervals_of_a_straight_line():
 
 
 def test_prediction_intervals_of_a_straight_line():
-    """Errors wholly unknown: for the line and for one more point the textbook's intervals of a regression."""
+    """Errors wholly unknown: given the scatter all is normal, and the scatter is integrated out by a fine sum."""
     rng = np.random.default_rng(11)
     x = np.linspace(1, 10, 9)
-    y = 2 + 0.5 * x + 0.3 * rng.standard_normal(9)
+    y = 0.2 + 0.05 * x + 0.03 * rng.standard_normal(9)
     at = np.array([2.0, 5.5, 9.0])
     found = predict(result_of(estimate(plan(**{**LINE, "scatter": True}), observations(x, y))), at)
     book = stats.linregress(x, y)
-    s = np.sqrt(np.sum((y - book.intercept - book.slope * x) ** 2) / 7)
+    squares = np.sum((y - book.intercept - book.slope * x) ** 2)
     leverage = 1 / 9 + (at - x.mean()) ** 2 / np.sum((x - x.mean()) ** 2)
+    tau = np.linspace(1e-4, 0.6, 6000)
+    log_p = -7 * np.log(tau) - squares / (2 * tau**2) - 0.5 * (tau / TYPICAL_SCATTER) ** 2
+    weight = np.exp(log_p - log_p.max())
+    weight /= weight.sum()
     for level, name in ((0.68, "68%"), (0.95, "95%")):
-        t = stats.t(7).ppf(0.5 * (1 + level))
-        np.testing.assert_allclose(np.ptp(found.law[name], axis=1) / 2, t * s * np.sqrt(leverage), rtol=0.01)
-        np.testing.assert_allclose(
-            np.ptp(found.impact[name], axis=1) / 2, t * s * np.sqrt(1 + leverage), rtol=0.01
-        )
+        for ends, more in ((found.law[name], 0.0), (found.impact[name], 1.0)):
+            for width, h in zip(np.ptp(ends, axis=1), leverage, strict=True):
+                half = optimize.brentq(
+                    lambda z, h=h, more=more, level=level: (
+                        weight @ special.erf(z / tau / np.sqrt(2 * (more + h))) - level
+                    ),
+                    0,
+                    2,
+                )
+                assert width / 2 == pytest.approx(half, rel=0.05)
+
+
+def test_bands_are_those_of_the_chain():
+    """Draws weighted about the maximum and emcee are of one posterior: widths within 10 %, at both levels."""
+    o = draw(10, np.random.default_rng(5), scatter=0.03, offset=0.03)
+    fit = estimate(plan(e_dry=E_DRY), o)
+    St = np.array([20.0, 60.0, 300.0])
+    chain = sample(fit.likelihood, fit.maximum, seed=1)
+    for source in (None, "lab 0"):
+        ours, theirs = (predict(result_of(fit, x), St, E_DRY, source=source) for x in (None, chain))
+        for level in ("68%", "95%"):
+            np.testing.assert_allclose(
+                np.ptp(ours.impact[level], axis=1), np.ptp(theirs.impact[level], axis=1), rtol=0.1
+            )
+            np.testing.assert_allclose(
+                np.ptp(ours.law[level], axis=1), np.ptp(theirs.law[level], axis=1), rtol=0.1
+            )
+
+
+def test_a_band_does_not_jump_where_an_offset_vanishes():
+    """Two sources are moved past one another in steps of 0.005: the estimated offset is zero for some."""
+    o = draw(12, np.random.default_rng(8), scatter=0.02)
+    labs = np.array([f"lab {i % 2}" for i in range(12)], object)
+    widths, offsets = [], []
+    for shift in np.arange(-0.03, 0.05, 0.005):
+        moved = dataclasses.replace(o, e=o.e + shift * (np.arange(12) % 2 - 0.5), labels={"source": labs})
+        fit = estimate(plan(e_dry=E_DRY), moved)
+        offsets.append(fit.maximum.values[-1])
+        widths.append(float(np.ptp(predict(result_of(fit), 60.0, E_DRY).impact["95%"])))
+    assert min(offsets) < 1e-3 < 0.015 < max(offsets)
+    assert np.max(np.abs(np.diff(np.log(widths)))) < 0.15
+
+
+def test_many_stokes_numbers_have_the_bands_of_few():
+    o = draw(10, np.random.default_rng(5), scatter=0.03, offset=0.03)
+    result = result_of(estimate(plan(), o))
+    St = np.geomspace(10, 600, 3000)
+    many, few = predict(result, St), predict(result, St[::300])
+    for level in ("68%", "95%"):
+        for a, b in ((many.impact, few.impact), (many.law, few.law)):
+            assert np.all(np.abs(a[level][::300] - b[level]) < 0.01 * np.ptp(b[level], axis=1)[:, None])
 
 
 def test_predictive_density_of_what_was_left_out():

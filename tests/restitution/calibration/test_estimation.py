@@ -1,0 +1,116 @@
+"""Estimates themselves: exact derivatives, where the search begins, and when its result is doubted."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from restitution.calibration import estimate, model_of
+from restitution.calibration.estimation.curvature import Curvature
+from restitution.calibration.estimation.small_sample import Restriction
+from restitution.errors import InputError
+from tests.fits import draw, observations, plan
+
+TRUTHS = {"K": 17.0, "e_dry": 0.9, "scatter": 0.025, "source_offset": 0.02, "a": 30.0, "n": 1.0}
+
+
+@pytest.mark.parametrize("law", ["eq4_exponential", "e_dry*exp(-(a/St)**n) + 0*sin(a)"])
+@pytest.mark.parametrize("limit", [0.0, 0.2])
+def test_exact_derivatives_are_those_of_differences(law, limit):
+    """Gradient and Hessian with errors of St, their correlation, scatter, two sources, limits, a prior."""
+    o = draw(30, np.random.default_rng(1), scatter=0.03, St_error=0.05, limit=limit, offset=0.03)
+    o = dataclasses.replace(o, correlation=np.full(30, -0.3))
+    bounds = {"a": (5.0, 100.0), "n": (0.3, 3.0)} if "**" in law else {}
+    likelihood = plan(law, bounds=bounds).likelihood(o)
+    values = np.array([TRUTHS[p.name] for p in likelihood.parameters])
+    term = Restriction.at(likelihood, values)
+    exact = Curvature.of(likelihood, term)(values)
+
+    def total(x):
+        return likelihood(x) + term(x)
+
+    steps = np.diag(3e-4 * values)
+    scale = np.sqrt(np.diag(exact.hessian))
+    for a, da in enumerate(steps):
+        slope = (total(values + da) - total(values - da)) / (2 * da[a])
+        assert exact.gradient[a] == pytest.approx(slope, abs=2e-5 * scale[a])
+        for b, db in enumerate(steps):
+            corners = total(values + da + db) - total(values + da - db) - total(values - da + db)
+            mixed = (corners + total(values - da - db)) / (4 * da[a] * db[b])
+            assert exact.hessian[a, b] == pytest.approx(mixed, abs=5e-5 * scale[a] * scale[b])
+
+
+def test_the_standard_error_of_a_line_is_the_textbooks():
+    """To six digits, where second differences leave percents."""
+    x = np.linspace(1, 10, 12)
+    y = 0.3 + 0.04 * x + 0.02 * np.random.default_rng(0).standard_normal(12)
+    line = plan("a + b*St", bounds={"a": (-5.0, 5.0), "b": (-2.0, 2.0)}, e_dry=1.0, scatter=False)
+    found = estimate(line, observations(x, y, 0.02)).maximum
+    C = np.linalg.inv(np.stack([np.ones(12), x]) @ np.stack([np.ones(12), x], axis=1)) * 0.02**2
+    np.testing.assert_allclose(found.covariance, C, rtol=1e-6)
+
+
+def peak(x):
+    """A narrow line far from the middle of the bounds, which see none of it."""
+    return 0.05 + 0.8 * np.exp(-0.5 * ((x - 452.0) / 4.0) ** 2)
+
+
+PEAK = "b + h*exp(-0.5*((St - m)/w)**2)"
+PEAK_BOUNDS = {"b": (0.0, 1.0), "h": (0.01, 5.0), "m": (100.0, 1000.0), "w": (1.0, 100.0)}
+
+
+def peaked():
+    x = np.linspace(400, 500, 35)
+    return observations(x, peak(x) + 0.005 * np.random.default_rng(2).standard_normal(35))
+
+
+def test_a_likelihood_that_is_flat_in_the_middle_of_the_bounds_is_searched_elsewhere():
+    found = estimate(plan(PEAK, bounds=PEAK_BOUNDS, e_dry=1.0), peaked())
+    own = dict(zip([p.name for p in found.maximum.parameters], found.maximum.values, strict=True))
+    assert own["m"] == pytest.approx(452.0, abs=0.2)
+    assert own["w"] == pytest.approx(4.0, abs=0.2)
+
+
+def test_a_start_of_the_callers_is_taken():
+    begun = plan(PEAK, bounds=PEAK_BOUNDS, e_dry=1.0, starts={"b": 0.1, "h": 0.5, "m": 450.0, "w": 5.0})
+    anywhere = plan(PEAK, bounds=PEAK_BOUNDS, e_dry=1.0)
+    a, b = (estimate(p, peaked()).maximum.values for p in (begun, anywhere))
+    np.testing.assert_allclose(a, b, rtol=1e-7)
+    for starts in ({"m": 3000.0}, {"q": 1.0}, {"e_dry": 0.9}):
+        with pytest.raises(InputError, match=next(iter(starts))):
+            estimate(plan(PEAK, bounds=PEAK_BOUNDS, e_dry=1.0, starts=starts), peaked())
+
+
+LANCZOS_3 = [
+    2.5134, 2.0443, 1.6684, 1.3664, 1.1232, 0.9269, 0.7679, 0.6389, 0.5338, 0.4479, 0.3776, 0.3197, 0.2720, 0.2325,
+    0.1997, 0.1723, 0.1493, 0.1301, 0.1138, 0.1, 0.0883, 0.0783, 0.0698, 0.0624,
+]  # fmt: skip
+"""NIST StRD Lanczos3: three exponentials that are hardly told apart, at x = 0, 0.05, ..., 1.15."""
+
+
+def test_parameters_that_can_hardly_be_told_apart_have_nists_errors_or_a_doubt():
+    """Certified values and standard deviations; whatever intervals do not agree with them are doubted."""
+    text = "(b1*exp(-b2*St) + b3*exp(-b4*St) + b5*exp(-b6*St))/10"
+    starts = {"b1": 1.2, "b2": 0.3, "b3": 5.6, "b4": 5.5, "b5": 6.5, "b6": 7.6}
+    bounds = dict.fromkeys(starts, (0.01, 80.0))
+    o = observations(0.05 * np.arange(24), np.array(LANCZOS_3) / 10)
+    fit = estimate(plan(text, bounds=bounds, e_dry=1.0, starts=starts), o)
+    value = [0.086816414977, 0.95498101505, 0.84400777463, 2.9515951832, 1.5825685901, 4.9863565084]
+    sigma = [0.017197908859, 0.097041624475, 0.041488663282, 0.10766312506, 0.058371576281, 0.034436403035]
+    names = [p.name for p in fit.maximum.parameters]
+    order = [names.index(name) for name in starts]
+    assert np.max(np.abs(fit.maximum.values[order] - value) / sigma) < 1e-3
+    np.testing.assert_allclose(fit.maximum.sigma[order], sigma, rtol=0.05)
+    half = 0.5 * np.diff(fit.maximum.intervals[0.68][order], axis=1)[:, 0]
+    agree = np.all((half > 0.7 * np.array(sigma)) & (half < 1.5 * np.array(sigma)))
+    assert agree or {d.name for d in fit.doubts} & {"sigma", "intervals", "curvature"}
+
+
+def test_functions_of_a_formula_have_their_slopes():
+    St = np.array([0.4, 1.3, 2.7])
+    for text in ("sin(a*St)", "cos(a*St)", "atan(a/St)", "erf(a*St)", "gamma(1 + a*St)"):
+        model = model_of(text, {"a": (0.1, 2.0)})
+        above, below = (model(St + h, 1.0, {"a": 0.7})[0] for h in (1e-6, -1e-6))
+        value, slope = model(St, 1.0, {"a": 0.7})
+        assert np.isfinite(value).all()
+        np.testing.assert_allclose(slope, (above - below) / 2e-6, rtol=1e-7)
