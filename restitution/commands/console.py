@@ -12,6 +12,9 @@ from restitution.errors import printable
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+_LONG = 200
+"""Rows from which on a table is printed plainly."""
+
 
 def show(what: RenderableType) -> None:
     """Print a text or a rich table."""
@@ -30,15 +33,34 @@ def show(what: RenderableType) -> None:
 
 
 def show_rows(headings: Sequence[str], rows: Iterable[Sequence[str]], right: Iterable[str] = ()) -> None:
-    """Print a table; the columns named in ``right`` are aligned right."""
+    """Print a table; the columns named in ``right`` are aligned right. One too long to be read is not folded."""
     from rich.table import Table
 
+    rows = list(rows)
+    if len(rows) > _LONG:
+        _show_plainly(headings, rows, set(right))
+        return
     table = Table(box=None, padding=(0, 1, 0, 0), header_style="bold")
     for heading in headings:
         table.add_column(printable(heading), justify="right" if heading in set(right) else "left", overflow="fold")
     for row in rows:
         table.add_row(*map(printable, row))
     show(table)
+
+
+def _show_plainly(headings: Sequence[str], rows: Sequence[Sequence[str]], right: set[str]) -> None:
+    """The same columns without the library that fits them to a terminal, which takes milliseconds a row."""
+    cells = [[printable(cell) for cell in row] for row in (headings, *rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    sides = [str.rjust if heading in right else str.ljust for heading in headings]
+    if sys.stdout is not None:
+        sys.stdout.write(
+            "".join(
+                " ".join(side(cell, width) for cell, side, width in zip(row, sides, widths, strict=True)).rstrip()
+                + "\n"
+                for row in cells
+            )
+        )
 
 
 def show_facts(facts: Iterable[tuple[str, str]]) -> None:

@@ -48,9 +48,6 @@ def run(args: argparse.Namespace) -> None:
     if args.speed not in (None, "far"):
         rule = "a whole trajectory gives the speed of the motion outside the film: far"
         raise InputError(Defect(rule, field="--speed", value=args.speed))
-    if args.separate:
-        rule = "does not go with --trajectory: records differ by their offset; fit them one by one instead"
-        raise InputError(Defect(rule, field="--separate", value=args.separate[0][0]))
     how = fit_options.reading_of(args)
     wakes = {"auto": (False, True), "on": (True,), "off": (False,)}[args.wake]
     plans = {
@@ -72,7 +69,11 @@ def run(args: argparse.Namespace) -> None:
             refuse(doubts)
         return
     best = args.law or (READINGS[0] if told <= FEW else _rank(measured, plans, how))
-    fit = fit_law(measured, plans[best], how)
+    try:
+        fit = fit_law(measured, plans[best], how)
+    except InputError:
+        show_doubts(doubts)  # they may be why
+        raise
     if args.strict:
         refuse(fit.doubts)
     chain = None
@@ -97,6 +98,8 @@ def run(args: argparse.Namespace) -> None:
 
 def _show_records(measured: Measured) -> None:
     """What each record says, law or no law."""
+    from restitution.calibration.trajectories.fit import FEW
+
     rows = []
     for wake, trajectories in measured.trajectories.items():
         for t in trajectories:
@@ -109,6 +112,23 @@ def _show_records(measured: Measured) -> None:
                          f"{t.log_evidence:.1f}"))  # fmt: skip
     heads = ("record", "wake", "e of each bounce", "start", "scale", "correlated noise", "rms/d", "ln evidence")
     show_rows(heads, rows, right=("rms/d", "ln evidence"))
+    if measured.rebounds_outside() <= FEW:
+        _show_bounces(measured)
+
+
+def _show_bounces(measured: Measured) -> None:
+    """The intervals of each e, where they are too few for a law to say more."""
+    from scipy.special import ndtri
+
+    from restitution.calibration.estimation.maximum import LEVELS
+
+    rows = []
+    for t in measured.trajectories[measured.preferred]:
+        told = t.outside()
+        for n, (mean, sigma) in enumerate(t.restitutions):
+            ends = [f"{mean - z * sigma:.3f} to {mean + z * sigma:.3f}" for z in ndtri([0.84, 0.975])]
+            rows.append((t.recording.name, str(n + 1), f"{mean:.3f}", *ends, "" if told[n] else "within the film"))
+    show_rows(("record", "bounce", "e", *(f"{level:.0%}" for level in LEVELS), ""), rows)
 
 
 def _rank(measured: Measured, plans: dict, how: Reading) -> str:

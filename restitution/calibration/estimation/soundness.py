@@ -53,8 +53,9 @@ def of_estimate(best: Maximum, freedom: NDArray) -> Iterator[Doubt]:
         elif not best.open_ends[LEVELS[0]][j].any():
             half, nu = 0.5 * (narrow[1] - narrow[0]), freedom[j]
             t = stdtrit(nu if np.isfinite(nu) else 1e9, 0.5 * (1 + LEVELS[0]))
-            ratio = half / (t * best.sigma[j])
-            if not 1 / APART < ratio < APART:
+            ratio = half / best.sigma[j]
+            # A bent law of few degrees of freedom has an interval between that of the normal and that of its t.
+            if not 1 / APART < ratio < APART * t:
                 yield Doubt(
                     "sigma",
                     f"{p.name}: its standard error {best.sigma[j]:.3g} by the curvature and half its 68 % "

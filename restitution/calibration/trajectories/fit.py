@@ -103,14 +103,28 @@ def law_fit(plan: Plan, o: Observations) -> Fit:
     return estimate(plan, o)
 
 
-def closures_of(fit: Fit, wake: bool, edge: float = H_FILM) -> Closures:
-    """The bouncing sphere with the fitted law; parameters that are separate by a label are not known here."""
-    names = [p.name for p in fit.maximum.parameters]
-    values = dict(fit.likelihood.fixed) | dict(zip(names, map(float, fit.maximum.values), strict=True))
+def closures_of(fit: Fit, wake: bool, edge: float = H_FILM, record: str | None = None) -> Closures:
+    """The bouncing sphere with the fitted law; of separate parameters those of the ``record``."""
+    values = dict(fit.likelihood.fixed) | values_of(fit, record)
     own = {p.name: values[p.name] for p in fit.likelihood.model.parameters}
     e_dry = values["e_dry"] if isinstance(values.get("e_dry"), float) else None
     law = FittedLaw(fit.likelihood.model, own, edge)
     return Closures(rebound=law, wake=OwnWake() if wake else None, e_dry=e_dry)
+
+
+def values_of(fit: Fit, record: str | None) -> dict[str, float]:
+    """Estimates by plain name; separate ones by the level that the first impact of the record has."""
+    o, values = fit.likelihood.observations, {}
+    rows = [i for i, source in enumerate(o.labels["source"]) if source == record]
+    for p, value in zip(fit.maximum.parameters, fit.maximum.values, strict=True):
+        name, bracket, level = p.name.partition("[")
+        if not bracket or (rows and str(o.labels[fit.likelihood.separate[name]][rows[0]]) == level[:-1]):
+            values[name] = float(value)
+    missing = [name for name in fit.likelihood.separate if name not in values]
+    if missing:
+        rule = f"has no impact that tells its {missing[0]}: leave the record out, or have one value for all"
+        raise InputError(Defect(rule, file=record))
+    return values
 
 
 @dataclass(frozen=True)
@@ -153,7 +167,7 @@ class TrajectoryFit:
         )
 
     def _record(self, t: WholeTrajectory) -> TrajectoryRecord:
-        path, rms, apex = distance_d(t, closures_of(self.fit, self.wake, self.measured.edge))
+        path, rms, apex = distance_d(t, closures_of(self.fit, self.wake, self.measured.edge, t.recording.name))
         other = next(
             (x for x in self.measured.trajectories.get(not self.wake, []) if x.recording is t.recording), None
         )

@@ -39,6 +39,7 @@ def write(
         alternative=_alternative(result),
         equation_latex=_latex(result),
         rises=_separable(result),
+        influenced=_influenced(result),
         **content,
     )
     files = {
@@ -85,6 +86,11 @@ def _alternative(result: FitResult) -> str:
     )
 
 
+def _influenced(result: FitResult) -> list[str]:
+    """Parameters of which it is known how each impact moves them."""
+    return list(dict.fromkeys(name for p in result.points for name in p.influence))
+
+
 def _parameters(result: FitResult) -> str:
     headings = ("parameter", "value", "sigma", "unit", "low_68", "high_68", "low_95", "high_95", "prior")
     rows = [
@@ -109,4 +115,6 @@ def _impacts(result: FitResult) -> str:
         "sigma",
         "pull",
     )
-    return rows_text(columns, [[getattr(p, name) for name in columns] for p in result.points])
+    moved = _influenced(result)
+    rows = [[*(getattr(p, name) for name in columns), *(p.influence.get(m) for m in moved)] for p in result.points]
+    return rows_text((*columns, *(f"influence_{name}" for name in moved)), rows)

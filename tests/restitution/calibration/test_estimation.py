@@ -5,9 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from restitution.calibration import estimate, model_of
+from restitution.calibration import estimate, model_of, result_of
 from restitution.calibration.estimation.curvature import Curvature
 from restitution.calibration.estimation.small_sample import Restriction
+from restitution.calibration.reading.observations import join
+from restitution.calibration.result.chained import earlier_of
 from restitution.errors import InputError
 from tests.fits import draw, observations, plan
 
@@ -114,3 +116,58 @@ def test_functions_of_a_formula_have_their_slopes():
         value, slope = model(St, 1.0, {"a": 0.7})
         assert np.isfinite(value).all()
         np.testing.assert_allclose(slope, (above - below) / 2e-6, rtol=1e-7)
+
+
+def test_a_chain_of_fits_is_nearly_the_fit_to_all():
+    """Correlated parameters and a scatter known to be the errors': the prior of the first half and the second half."""
+    rng = np.random.default_rng(3)
+    first, second = draw(40, rng), draw(40, rng)
+    whole = estimate(plan(scatter=False), join([first, second]))
+    earlier = earlier_of(result_of(estimate(plan(scatter=False), first)), "first.json")
+    chained = estimate(plan(scatter=False, earlier=earlier), second)
+    assert np.all(np.abs(chained.maximum.values - whole.maximum.values) < 0.02 * whole.maximum.sigma)
+    np.testing.assert_allclose(chained.maximum.covariance, whole.maximum.covariance, rtol=0.02)
+    assert "prior of K, e_dry: the fit first.json" in chained.notes
+
+
+def test_a_prior_by_the_same_data_is_refused_or_doubted():
+    first, other = (draw(12, np.random.default_rng(seed), scatter=0.03) for seed in (1, 2))
+    named = dataclasses.replace(first, files={"a.csv": "0" * 64})
+    earlier = earlier_of(result_of(estimate(plan(), named)), "a.json")
+    with pytest.raises(InputError, match=r"a\.csv.*twice"):
+        estimate(plan(earlier=earlier), named)
+    again = estimate(plan(earlier=earlier), join([other, first.take(np.arange(3))]))
+    assert [d.name for d in again.doubts] == ["twice"]
+    with pytest.raises(InputError, match="another law"):
+        estimate(plan("eq4_rational", earlier=earlier), other)
+    with pytest.raises(InputError, match="impact speed"):
+        estimate(plan(earlier=dataclasses.replace(earlier, speed="contact")), other)
+
+
+def test_an_impact_that_is_off_is_the_one_that_moves_the_law():
+    o = draw(20, np.random.default_rng(4), scatter=0.01)
+    middle = int(np.argmin(np.abs(o.St - 60)))
+    e = o.e.copy()
+    e[middle] -= 0.15
+    points = result_of(estimate(plan(), dataclasses.replace(o, e=e)), influence=True).points
+    moved = [abs(p.influence["K"]) for p in points]
+    assert int(np.argmax(moved)) == middle
+    assert points[middle].influence["K"] > 0.5  # a lower e asks for a greater K
+
+
+def test_yorks_line_by_option():
+    """Without ln of the variances, as York et al. (2004) have it for Pearson's data with York's weights."""
+    x = np.array([0.0, 0.9, 1.8, 2.6, 3.3, 4.4, 5.2, 6.1, 6.5, 7.4])
+    y = np.array([5.9, 5.4, 4.4, 4.6, 3.5, 3.7, 2.8, 2.8, 2.4, 1.5])
+    sx = np.array([1000.0, 1000, 500, 800, 200, 80, 60, 20, 1.8, 1.0]) ** -0.5
+    sy = np.array([1.0, 1.8, 4, 8, 20, 20, 70, 70, 100, 500]) ** -0.5
+    line = {"law": "a + b*St", "bounds": {"a": (0.0, 10.0), "b": (-5.0, 5.0)}, "e_dry": 1.0, "log_variance": False}
+    found = estimate(plan(**line, scatter=False), observations(x, y, sy, sx)).maximum
+    np.testing.assert_allclose(found.values, [5.47991022, -0.480533407], atol=2e-5)
+    with pytest.raises(InputError, match="--no-scatter"):
+        estimate(plan(**line), observations(x, y, sy, sx))
+
+
+def test_the_same_fit_is_the_same_to_the_last_digit():
+    o = draw(12, np.random.default_rng(9), scatter=0.03, offset=0.03)
+    assert result_of(estimate(plan(), o)).to_json() == result_of(estimate(plan(), o)).to_json()

@@ -193,6 +193,22 @@ def test_own_formula_and_posterior(case):
     assert case("predict", "fit.json", "--st", "50", "--e-dry", "0.97")[0] == 0
 
 
+def test_a_fit_is_the_prior_of_the_next_and_its_source_is_predicted(case):
+    write(case, rows(seed=0), "a.csv")
+    write(case, rows(seed=1), "b.csv")
+    assert case("fit", "a.csv", "--out", "a.json")[0] == 0
+    status, out, _ = case("fit", "b.csv", "--prior", "a.json", "--out", "b.json", "--start", "K=15")
+    assert (status, "prior of K" in out) == (0, True)
+    widths = [
+        float(np.diff(read_fit(case.folder / f).parameters[0].intervals["68%"])[0]) for f in ("a.json", "b.json")
+    ]
+    assert widths[1] < 0.9 * widths[0]
+    assert case("fit", "a.csv", "--prior", "a.json")[0] == 2
+    assert case("fit", "b.csv", "--prior", "a.json", "--prior", "b.json")[0] == 2
+    status, _, err = case("predict", "b.json", "--st", "50", "--e-dry", "0.97", "--source", "nobody")
+    assert (status, "nobody" in err) == (2, True)
+
+
 def test_tracks_and_shipped_records(case):
     case("impacts", "--template", ".")
     status, _, _ = case("fit", "track.csv", "--conditions", "conditions.toml", "--speed", "contact")
