@@ -30,7 +30,7 @@ from scipy.optimize import brentq, least_squares
 from scipy.special import stdtrit
 
 from restitution.calibration import Plan, estimate, model_of
-from restitution.calibration.estimation.soundness import of_estimate
+from restitution.calibration.estimation.identifiability import of_estimate
 from restitution.calibration.reading.observations import Observations
 from restitution.errors import InputError
 from restitution.files import write_whole

@@ -2,6 +2,7 @@
 
 Read :mod:`.parameters`, :mod:`.rebound_model` and :mod:`.formula` (what is fitted), :mod:`.earlier` (what is known
 beforehand), :mod:`.plan` (what is free), :mod:`.likelihood`, :mod:`.first_guess` and :mod:`.maximum`,
-:mod:`.curvature` (exact derivatives), :mod:`.identifiability` and :mod:`.soundness` (what the data cannot tell),
-:mod:`.small_sample`, :mod:`.draws` and :mod:`.posterior` (intervals), :mod:`.fitting` (all of it).
+:mod:`.curvature` (exact derivatives) and :mod:`.profile` (intervals of what is hardly told apart),
+:mod:`.identifiability` (what the data cannot tell), :mod:`.small_sample`, :mod:`.draws` and :mod:`.posterior`
+(intervals), :mod:`.fitting` (all of it).
 """

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from restitution.calibration.estimation.curvature import Curvature, sharpened
 from restitution.calibration.estimation.first_guess import first_guess
-from restitution.calibration.estimation.identifiability import check_bounds, check_flat
+from restitution.calibration.estimation.identifiability import check_bounds, check_flat, of_estimate
 from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
 from restitution.calibration.estimation.maximum import LEVELS, Maximum, Thresholds, maximise
 from restitution.calibration.estimation.plan import Plan
+from restitution.calibration.estimation.profile import NARROW, profiled
 from restitution.calibration.estimation.small_sample import Restriction, threshold
-from restitution.calibration.estimation.soundness import of_estimate
 from restitution.calibration.reading.impact_checks import doubts_about
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.showing import Showing, Table, counted
@@ -111,12 +111,14 @@ def estimate(
         level: [threshold(level, nu) if want else None for nu, want in zip(freedom, wanted, strict=True)]
         for level in LEVELS
     }
-    profiled = maximise(function, parameters, best.values, Thresholds(rises), steps=best.sigma)
-    if profiled.negative_log < best.negative_log - _LOWER:  # a better maximum on the way along the profile
-        profiled = sharpened(profiled, function, curvature)
+    if curvature is not None and best.condition is not None and best.condition > NARROW:
+        best = profiled(best, function, curvature, rises)
     else:
-        profiled = replace(best, intervals=profiled.intervals, open_ends=profiled.open_ends, calls=profiled.calls)
-    best = profiled
+        ended = maximise(function, parameters, best.values, Thresholds(rises), steps=best.sigma)
+        if ended.negative_log < best.negative_log - _LOWER:  # a better maximum on the way along the profile
+            best = sharpened(ended, function, curvature)
+        else:
+            best = replace(best, intervals=ended.intervals, open_ends=ended.open_ends, calls=ended.calls)
     return Fit(plan, likelihood, best, freedom, restriction is not None, _notes(likelihood, best))
 
 

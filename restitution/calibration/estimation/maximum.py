@@ -140,14 +140,18 @@ def _interval(minuit, p: Parameter, rise: float | None) -> tuple[tuple[float, fl
     if rise is None:
         return (np.nan, np.nan), (False, False)
     # MINUIT takes a confidence level; this is the one whose chi^2 quantile is the rise.
-    minuit.minos(p.name, cl=float(chdtr(1, rise)))
-    minos = minuit.merrors[p.name]
     best = minuit.values[p.name]
     ends, open_ends = [], []
-    for side, valid, limit, error in (
-        (0, minos.lower_valid, minos.at_lower_limit, minos.lower),
-        (1, minos.upper_valid, minos.at_upper_limit, minos.upper),
-    ):
+    try:
+        minuit.minos(p.name, cl=float(chdtr(1, rise)))
+        minos = minuit.merrors[p.name]
+        found = (
+            (0, minos.lower_valid, minos.at_lower_limit, minos.lower),
+            (1, minos.upper_valid, minos.at_upper_limit, minos.upper),
+        )
+    except RuntimeError:  # not sure enough of its maximum
+        found = ((0, False, False, 0.0), (1, False, False, 0.0))
+    for side, valid, limit, error in found:
         x = best + error if valid and not limit else _search(minuit, p, rise, side)
         ends.append(np.nan if x is None else x)
         open_ends.append(x is None)

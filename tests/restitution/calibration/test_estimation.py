@@ -119,7 +119,7 @@ def test_functions_of_a_formula_have_their_slopes():
 
 
 def test_a_chain_of_fits_is_nearly_the_fit_to_all():
-    """Correlated parameters and a scatter known to be the errors': the prior of the first half and the second half."""
+    """Correlated parameters, known errors: the second half, with the first as its prior."""
     rng = np.random.default_rng(3)
     first, second = draw(40, rng), draw(40, rng)
     whole = estimate(plan(scatter=False), join([first, second]))

@@ -1,0 +1,122 @@
+"""Ends of the profile's intervals by exact derivatives, for parameters that are nearly exchangeable.
+
+The others follow the parameter that is moved by Newton's method on -ln L with its exact gradient and curvature,
+damped (Levenberg, Marquardt) where it does not lead down. The search of :mod:`.maximum` learns the curvature
+as it goes and loses its way in a valley whose walls are a thousand times steeper than its floor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from restitution.calibration.estimation.curvature import Curvature
+from restitution.calibration.estimation.maximum import Function, Maximum
+from restitution.calibration.estimation.parameters import log_prior
+
+NARROW = 1e4
+"""Condition of the scaled curvature from which on intervals are made here."""
+_NEWTON = 200
+_SETTLED = 1e-6
+"""Newton's decrement, in units of -ln L, below which the others have followed."""
+_MOST_DAMPED = 1e6
+"""Of Levenberg and Marquardt, relative to the scaled curvature, where no step leads down any more."""
+_GROWTH = 1.3
+"""Of the way from the estimate, until the profile has risen enough."""
+_FARTHEST = 40
+
+
+def profiled(
+    best: Maximum, negative_log: Function, curvature: Curvature, rises: Mapping[float, Sequence[float | None]]
+) -> Maximum:
+    """The estimate with intervals; ``rises`` as in :class:`.maximum.Thresholds`."""
+    profile = _Profile(best, negative_log, curvature)
+    intervals, open_ends = {}, {}
+    for level, rise in rises.items():
+        sides = [
+            [(np.nan, False)] * 2 if r is None else [profile.end(j, r, side) for side in (-1, 1)]
+            for j, r in enumerate(rise)
+        ]
+        intervals[level] = np.array([[end for end, _ in pair] for pair in sides])
+        open_ends[level] = np.array([[is_open for _, is_open in pair] for pair in sides])
+    return replace(best, intervals=intervals, open_ends=open_ends)
+
+
+class _Profile:
+    """-ln L with one parameter held, minimised over the others."""
+
+    def __init__(self, best: Maximum, negative_log: Function, curvature: Curvature):
+        self.best, self.function, self.curvature = best, negative_log, curvature
+        self.low, self.high = np.array([p.bounds for p in best.parameters]).T
+        self.even = np.array([p.scale == "even" for p in best.parameters], bool)
+
+    def total(self, values: NDArray) -> float:
+        """-ln L with priors."""
+        return self.function(values) - log_prior(self.best.parameters, values, every=False)
+
+    def end(self, j: int, rise: float, side: int) -> tuple[float, bool]:
+        """Where the profile has risen by ``rise`` (of -2 ln L), and whether that is the bound instead."""
+        best, sigma = self.best, self.best.sigma[j]
+        limit = (self.low if side < 0 else self.high)[j]
+        step = float(np.sqrt(rise)) * sigma
+        if not np.isfinite(step) or step <= 0:
+            return np.nan, True
+        followed = {0.0: best.values}
+
+        def excess(way: float) -> float:
+            near = followed[min(followed, key=lambda known: abs(known - way))]
+            values = near.copy()
+            values[j] = best.values[j] + side * way
+            if near is best.values:
+                direction = best.covariance[:, j] / best.covariance[j, j]
+                others = np.arange(len(values)) != j
+                values[others] += side * way * direction[others]
+            values = self.follow(np.clip(np.where(self.even, np.abs(values), values), self.low, self.high), j)
+            followed[way] = values
+            return 2 * (self.total(values) - best.negative_log) - rise
+
+        inner, way, most = 0.0, step, abs(limit - best.values[j])
+        for _ in range(_FARTHEST):
+            way = min(way, most)
+            if excess(way) > 0:
+                return best.values[j] + side * brentq(excess, inner, way, xtol=1e-5 * step), False
+            if way == most:
+                return float(limit), not (side < 0 and bool(self.even[j]))
+            inner, way = way, _GROWTH * way
+        return np.nan, True
+
+    def follow(self, values: NDArray, j: int) -> NDArray:
+        """The others where -ln L is least, parameter j held."""
+        value, damping, d = self.total(values), 0.0, None
+        for _ in range(_NEWTON):
+            d = d or self.curvature(values)
+            if d is None:
+                break
+            pushed = ((values <= self.low) & (d.gradient > 0)) | ((values >= self.high) & (d.gradient < 0))
+            free = ~pushed
+            free[j] = False
+            if not free.any():
+                break
+            g, H = d.gradient[free], d.hessian[np.ix_(free, free)]
+            scale = 1 / np.sqrt(np.maximum(np.abs(np.diag(H)), 1e-300))
+            size, directions = np.linalg.eigh(H * np.outer(scale, scale))
+            size = np.maximum(np.abs(size), 1e-14 * np.abs(size).max())  # downhill where it bends the other way
+            along = directions.T @ (scale * g)
+            if along @ (along / size) < _SETTLED:
+                break
+            step = np.zeros(len(values))
+            step[free] = -scale * (directions @ (along / (size + damping)))
+            new = values + step
+            new = np.clip(np.where(self.even, np.abs(new), new), self.low, self.high)
+            if (lower := self.total(new)) < value:
+                values, value, damping, d = new, lower, 0.2 * damping, None
+                damping = damping if damping > 1e-12 else 0.0
+            elif damping > _MOST_DAMPED:
+                break
+            else:
+                damping = max(5 * damping, float(size[0]))
+        return values
