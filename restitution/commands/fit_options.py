@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from restitution.commands import options
 
 if TYPE_CHECKING:
-    from restitution.calibration.estimation.earlier import Earlier
+    from restitution.calibration.estimation.parameters import Earlier
     from restitution.calibration.estimation.plan import Plan
     from restitution.calibration.reading.reading import Reading
 

@@ -33,8 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln, log_ndtr, stdtr
 
-from restitution.calibration.estimation.earlier import Earlier, Placed
-from restitution.calibration.estimation.parameters import Normal, Parameter
+from restitution.calibration.estimation.parameters import Earlier, Normal, Parameter, Placed
 from restitution.calibration.estimation.rebound_model import ReboundModel
 from restitution.calibration.reading.observations import Observations
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.estimation.earlier import Earlier
 from restitution.calibration.estimation.identifiability import check_data
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER, Likelihood
-from restitution.calibration.estimation.parameters import Flat, HalfNormal, Normal, Parameter
+from restitution.calibration.estimation.parameters import Earlier, Flat, HalfNormal, Normal, Parameter
 from restitution.calibration.estimation.rebound_model import ReboundModel
 from restitution.calibration.reading.observations import Observations
 from restitution.errors import Defect, InputError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from restitution.calibration.estimation.earlier import Earlier
+from restitution.calibration.estimation.parameters import Earlier
 from restitution.calibration.result.fit_result import FitResult
 from restitution.errors import Defect, InputError
 from restitution.stokes import Speed
