@@ -107,7 +107,7 @@ def run(args: argparse.Namespace) -> None:
             raise InputError(Defect("must be positive and finite", field=option, value=f"{value:g}"))
     _check_taken(args, wanted)
     _check_place(args)
-    closure = closure_of(args.law, dict(args.parameters), dict(args.of))
+    closure = closure_of(args.law, options.once("NAME=NUMBER", args.parameters), options.once("--of", args.of))
     request = Request(args.level or 0, args.speed, args.within or _WITHIN, args.st_range or _STOKES)
     conditions = conditions_of(args)
     film = FilmRequest(args.cells, args.speed, args.modulus)
@@ -127,8 +127,16 @@ def _check_taken(args: argparse.Namespace, wanted: Target) -> None:
         if value not in (None, False) and f"--{option}" not in wanted.takes:
             rule = f"is not taken by {wanted.key}, which takes {wanted.takes or 'no options'}"
             raise InputError(Defect(rule, field=f"--{option}"))
-    if args.level and args.speed is not None:
-        raise InputError(Defect(f"belongs to level 0; level {args.level} takes --st-range", field="--speed"))
+    for option in ("fluid", "sphere", "conditions", "e-dry"):
+        if getattr(args, option.replace("-", "_")) is not None and "--fluid" not in wanted.takes:
+            rule = f"is not taken by {wanted.key}: its functions and tables are for any pair"
+            raise InputError(Defect(rule, field=f"--{option}"))
+    for option, value in (("--speed", args.speed), ("--within", args.within)):
+        if args.level and value is not None:
+            raise InputError(Defect(f"belongs to level 0; level {args.level} takes --st-range", field=option))
+    if not args.level and args.st_range and not args.drop_test:
+        rule = "belongs to levels 1 and 2, and to --drop-test; level 0 takes --speed"
+        raise InputError(Defect(rule, field="--st-range"))
 
 
 def _numbers(args: argparse.Namespace) -> list[tuple[str, float | None]]:

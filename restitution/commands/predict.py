@@ -84,9 +84,14 @@ def conditions_of(args: argparse.Namespace) -> Conditions | None:
     from pydantic import ValidationError
 
     from restitution.conditions import Conditions, defects_of, read_conditions
-    from restitution.errors import InputError
+    from restitution.errors import Defect, InputError
 
     if args.conditions:
+        for option in ("fluid", "sphere"):
+            if getattr(args, option) is not None:
+                raise InputError(
+                    Defect("stands in the file of --conditions: give one of them", field=f"--{option}")
+                )
         return read_conditions(args.conditions)
     if args.fluid is None and args.sphere is None:
         return None

@@ -49,6 +49,8 @@ def closure_of(
         if parameters:
             raise InputError("a fit has its parameters: only a law takes NAME=NUMBER")
         return fit_closure(law_or_fit, levels=levels)
+    if levels:
+        raise InputError("a law has no separate parameters: only a fit takes --of COLUMN=NAME")
     return law_closure(laws.get(str(law_or_fit), **(parameters or {})))
 
 

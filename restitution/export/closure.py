@@ -128,7 +128,7 @@ class Closure:
             if of_value:
                 value = np.where(e < 0, 0.0, np.where(e > most, most, e))
             else:
-                value = np.where((e < 0) | (e > most), 0.0, value)
+                value = np.where((e <= 0) | (e > most), 0.0, value)
             value = np.where(computed, value, 0.0)
         return np.where(admissible, value, np.nan)
 

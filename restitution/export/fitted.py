@@ -117,11 +117,11 @@ def fit_closure(path: str | Path, levels: Mapping[str, str] | None = None) -> Cl
         name=f"{result.law.name or 'own_formula'}_fit",
         title=f"{result.law.title}, fitted to {result.goodness.measured} impacts",
         family="rebound",
-        text=result.law.text,
-        meaning=f"e_eff = {result.law.text}",
+        text=model.text,
+        meaning=f"e_eff = {model.text}",
         variables=variables,
         constants=constants,
-        convention=result.law.convention,
+        convention=model.convention,
         speed=Speed(result.speed_definition),
         edge=result.edge_d if result.speed_definition == Speed.FAR else None,
         validity=(result.stokes_range[0] * low, result.stokes_range[1] * high),
@@ -137,11 +137,19 @@ def fit_closure(path: str | Path, levels: Mapping[str, str] | None = None) -> Cl
         identity=(
             f"fit: {Path(path).name} sha256 {digest}",
             *hashes,
+            *(() if "e_dry" in values else (f"data: {_dry_range(result)}",)),
             *(f"note: {n}" for n in result.notes),
             *(f"doubt: {d}" for d in result.doubts),
         ),
         interval=interval,
     )
+
+
+def _dry_range(result: FitResult) -> str:
+    """Dry restitutions of the data: beyond them e_eff rests on the law's form alone."""
+    low, high = result.e_dry_range
+    span = f"{low:g} to {high:g}" if high > low else f"{low:g} alone"
+    return f"measured with e_dry {span}; of another e_dry by the form of the law only"
 
 
 def _constant(result: FitResult, name: str, value: float) -> Constant:

@@ -241,7 +241,7 @@ def _slope(closure: Closure, expression: Any, constants: list[Let]) -> Function:
     if closure.rebound:
         limits = (
             Let("e", expression),
-            When(("e", "<", 0.0), 0.0),
+            When(("e", "<=", 0.0), 0.0),  # also where exp has underflowed, and St^2 with it
             When(("e", ">", _dry(closure, constants)), 0.0),
         )
     body = (*_guards(closure), *constants, *limits, Give(slope))

@@ -75,6 +75,10 @@ def impacts_of(closure: Closure, conditions: Conditions | None, e_dry: float | N
     if conditions is None:
         rule = "needs fluid and sphere: --fluid density=D,viscosity=MU --sphere diameter=D,density=RHO,e_dry=E"
         raise InputError(Defect(rule, field="--to", value=target))
+    held = closure.e_dry if closure.e_dry is not None else conditions.sphere.e_dry
+    if e_dry is not None and held is not None and e_dry != held:
+        whose = "the fit" if closure.e_dry is not None else "the sphere"
+        raise InputError(Defect(f"{whose} has {held:g} already", field="--e-dry", value=f"{e_dry:g}"))
     dry = next((x for x in (closure.e_dry, e_dry, conditions.sphere.e_dry) if x is not None), None)
     if dry is None:
         raise InputError(Defect("is needed: --e-dry 0.97, or --sphere ...,e_dry=0.97", field="e_dry"))

@@ -11,8 +11,8 @@ from restitution.calibration.estimation.likelihood import OFFSET, SCATTER
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.calibration.result.fit_result import FitResult
 from restitution.conditions import LARGEST
-from restitution.errors import Defect, InputError
-from restitution.stokes import CONVENTIONS, Speed
+from restitution.errors import ConventionError, Defect, InputError
+from restitution.stokes import CONVENTIONS, Speed, StokesNumber
 from restitution.tables.schema import read_record
 
 _ROUND_OFF = 1e-6
@@ -29,6 +29,7 @@ def read_fit(path: str | Path) -> FitResult:
     """The fit in a JSON file; raises :class:`InputError` naming all that is wrong with it."""
     result = read_record(path, FitResult)
     found = [finding for rule in (_law, _parameters, _ranges, _points) for finding in rule(result)]
+    found = found or [*_model(result)]
     found = found or [*_names(result), *_covariance(result), *_chain(result), *_draws(result)]
     if found:
         raise InputError(
@@ -98,13 +99,33 @@ def _points(result: FitResult) -> Iterator[Finding]:
                 yield f"points.{k}.{name}", f"{value:g}", "must not be negative, St not zero"
 
 
-def _names(result: FitResult) -> Iterator[Finding]:
-    """Every parameter of the law is there once: free, fixed, or with a value for each level."""
+def _model(result: FitResult) -> Iterator[Finding]:
+    """What the file says of its law is what the law is: a text of its own would be believed, and evaluated."""
     try:
-        law = {p.name for p in result.model().parameters}
+        model = result.model()
     except InputError as error:
         yield "law", result.law.name or result.law.text, str(error)
         return
+    said = "the file was edited by hand or is of another version; run the fit again"
+    if result.law.name not in (None, model.name):
+        yield "law.name", result.law.name, f"is no law; {said}"
+    for field in ("text", "convention"):
+        own = getattr(model, field)
+        if getattr(result.law, field) != own:
+            yield f"law.{field}", getattr(result.law, field), f"is {own} of {model.name}: {said}"
+    try:
+        ratio = StokesNumber(1.0, result.stokes_convention).to(model.convention).value
+    except ConventionError:
+        return  # it differs from impact to impact, by fluid and sphere
+    low, high = result.law_stokes_ratio
+    if not np.allclose((low, high), ratio, rtol=_ROUND_OFF, atol=0):
+        rule = f"is {ratio:g} of {result.stokes_convention} to {model.convention}: {said}"
+        yield "law_stokes_ratio", f"{low:g} to {high:g}", rule
+
+
+def _names(result: FitResult) -> Iterator[Finding]:
+    """Every parameter of the law is there once: free, fixed, or with a value for each level."""
+    law = {p.name for p in result.model().parameters}
     there = {p.name.partition("[")[0] for p in result.parameters} | result.fixed.keys()
     for name in sorted(law - there):
         yield "parameters", None, f"has no {name}, which the law needs"

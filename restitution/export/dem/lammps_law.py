@@ -37,6 +37,9 @@ def attach(lmp, walls=((2, 0.0),)):
     Call after the styles are set and before run. The input needs units si, atom_style sphere, newton off,
     comm_modify vel yes, pair_style granular with pair_coeff * * MODEL, and fix wall/gran granular MODEL a wall.
     """
+    if lmp.extract_setting("newton_pair"):
+        raise ValueError("the input needs 'newton off': else a contact across a periodic or processor boundary "
+                         "is damped on one side only")
     kept = {{}}
     lmp.command("fix film_loss all external pf/callback 1 1")
 

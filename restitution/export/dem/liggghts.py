@@ -12,6 +12,7 @@ from restitution.export.dem.liggghts_law import liggghts_law
 from restitution.export.dem.snippet import (
     STEPS_A_CONTACT,
     Request,
+    between_two,
     comments,
     constant_of,
     fastest,
@@ -41,13 +42,27 @@ def _constant(impacts: Impacts, request: Request) -> str:
     said = [
         *range_lines(impacts, constant),
         "the contact may pull at its end (no limitForce): e typed is e delivered",
+        _other_contacts(impacts, request),
         *_step(),
     ]
     text = comments(impacts, "LIGGGHTS", VERSION, said)
     text += f"\nfix             e all property/global coefficientRestitution peratomtypepair 1 {constant.e:.9g}\n"
     text += f"fix             v all property/global characteristicVelocity scalar {request.speed:.6g}\n"
     text += "pair_style      gran model hooke\npair_coeff      * *\n"
+    if impacts.conditions.partner is not None:
+        return text
     return text + "fix             film all wall/gran model hooke primitive type 1 zplane 0.0\n"
+
+
+def _other_contacts(impacts: Impacts, request: Request) -> str:
+    """A type has one e, for walls and for spheres: whom it is for."""
+    if impacts.conditions.partner is not None:
+        return "for these spheres alone: a wall is to have its own type, with the e of an export of --sphere alone"
+    return (
+        "for walls: spheres of the same type get it too, where the law gives two of them "
+        f"{between_two(impacts, request):.6g} at that relative speed, of twice the St. Where they meet, the wall "
+        "is to have its own type, and the spheres the e of an export with a partner in --conditions"
+    )
 
 
 def refitted(impacts: Impacts, request: Request) -> tuple[Refit, float]:

@@ -176,8 +176,8 @@ def liggghts_law(impacts: Impacts, request: Request, version: str) -> str:
         "contact may pull at its end, so that e asked is e delivered",
         "with a source tree (also of CFDEMcoupling): put it into src/ and compile as always. Compiled in that "
         "arrangement against the headers of 3.8.0, not linked",
-        "with Debian's liggghts and libliggghts-dev: a library loaded before the program, for tangential off, "
-        "no_history and history, no cohesion, no rolling; tried. In an empty folder:",
+        "with Debian's liggghts, libliggghts-dev and libopenmpi-dev: a library loaded before the program, for "
+        "tangential off, no_history and history, no cohesion, no rolling; tried. In an empty folder:",
         f"   {lists}; touch style_contact_model.h",
         f"   {' '.join(compile_command(file, f'{name}.so'))}",
         f"   LD_PRELOAD=./{name}.so liggghts -in in.yours (mpirun: -x LD_PRELOAD=...)",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,6 +47,14 @@ def constant_of(impacts: Impacts, request: Request) -> Constant:
     if request.speed is None:
         raise InputError(Defect("level 0 takes e at one impact speed: --speed V, in m/s", field="--speed"))
     return constant_at(impacts, request.speed, request.within)
+
+
+def between_two(impacts: Impacts, request: Request) -> float:
+    """Level 0: e of two spheres at the speed asked for; of a sphere at a wall, that of two of its like."""
+    if impacts.conditions.partner is not None or request.speed is None:
+        return constant_of(impacts, request).e
+    two = impacts.conditions.model_copy(update={"partner": impacts.conditions.sphere})
+    return constant_at(replace(impacts, conditions=two), request.speed, request.within).e
 
 
 def check_level(request: Request, target: str, levels: tuple[int, ...]) -> None:

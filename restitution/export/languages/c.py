@@ -23,7 +23,8 @@ def _file(language: Language, source: Source) -> str:
     name, upper, table = source.name, source.name.upper(), source.table
     text = "#include <math.h>\n"
     if not source.part:
-        check = f"{language.comment} Self-check: cc -std=c99 -D{upper}_MAIN -x c {name}.h -lm && ./a.out\n"
+        check = f"{language.comment} Not with -ffast-math or -Ofast, which take it that there is no NaN\n"
+        check += f"{language.comment} Self-check: cc -std=c99 -D{upper}_MAIN -x c {name}.h -lm && ./a.out\n"
         guard = f"\n#ifndef {upper}_H\n#define {upper}_H\n\n"
         text = language.comments(source.heading) + check + guard + text
     for f in source.functions:

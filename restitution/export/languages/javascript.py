@@ -1,4 +1,4 @@
-"""JavaScript: one script, for a page as well as for node."""
+"""JavaScript: one script, for a page as well as for node, there a CommonJS module, which ES modules import too."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ def _expression(expression: Any) -> str:
 def _file(language: Language, source: Source) -> str:
     name, table = source.name, source.table
     checked = [(name, "values")] + [(f"{name}_slope", "slopes")] * source.derivative
-    text = language.comments(source.heading) + f'// Self-check: node {name}.js\n"use strict";\n'
+    text = (
+        language.comments(source.heading)
+        + f'// Self-check: node {name}.js (.cjs in a package of "type": "module")\n"use strict";\n'
+    )
     for f in source.functions:
         text += f"\n// {f.says}\nfunction {f.name}({', '.join(f.arguments)}) {{\n{language.body(f)}}}\n"
     rows = "".join(f"        {row},\n" for row in language.rows(table, "[", "]", ", "))
@@ -36,7 +39,10 @@ def _file(language: Language, source: Source) -> str:
         text += f"        if (!({difference} <= {TOLERANCE!r} * Math.abs({what}[i]))) wrong++;\n"
     text += "    });\n    return wrong;\n}\n"
     public = ", ".join([*(f.name for f in source.functions), f"{name}_self_check"])
-    text += f'\nif (typeof module !== "undefined") {{\n    module.exports = {{ {public} }};\n'
+    text += f'\nif (typeof module === "undefined") {{\n    globalThis.{name}_law = {{ {public} }};\n'
+    text += '    if (typeof process === "object" && process.versions && process.versions.node) {\n'
+    text += f'        throw new Error("{name} is no ES module: save it as .cjs, import it from there");\n    }}\n'
+    text += f"}} else {{\n    module.exports = {{ {public} }};\n"
     text += "    if (require.main === module) {\n"
     text += f"        const wrong = {name}_self_check();\n        console.log(`{name}: ${{wrong}} wrong`);\n"
     return text + "        process.exitCode = wrong ? 1 : 0;\n    }\n}\n"

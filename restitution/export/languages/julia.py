@@ -44,7 +44,7 @@ def _file(language: Language, source: Source) -> str:
 JULIA = Language(
     key="julia",
     title="Julia",
-    version="Julia 1; not tried here",
+    version="Julia 1; tried with Julia 1.5.3",
     suffix=".jl",
     comment="#",
     conjunction=" && ",

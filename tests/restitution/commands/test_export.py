@@ -96,6 +96,18 @@ def test_a_drop_test_without_the_program_is_its_input(command, monkeypatch, tmp_
         (["eq4_exponential", "--to", "walberla"], "twice"),
         (["taylor_1925", "--to", "yade", *FLUID, *SPHERE, "--speed", "0.3"], "twice"),
         (["eq4_exponential", "--to", "c", "--out", "missing/law.h"], "missing"),
+        # What would have no effect, or two meanings, is no input either.
+        (["eq4_exponential", "K=5", "K=6", "--to", "c"], "twice"),
+        (["eq4_exponential", "--to", "c", "--e-dry", "0.9"], "--e-dry"),
+        (["eq4_exponential", "--to", "c", *FLUID], "--fluid"),
+        (["eq4_exponential", "--to", "c", "--of", "material=steel"], "--of"),
+        (["eq4_exponential", "--to", "csv", *FLUID, *SPHERE, "--e-dry", "0.9"], "--e-dry"),
+        (["eq4_exponential", "--to", "csv", *FLUID, *SPHERE, "--conditions", "any.toml"], "--fluid"),
+        (["eq4_exponential", "--to", "yade", *FLUID, *SPHERE, "--level", "2", "--within", "0.1"], "--within"),
+        (
+            ["eq4_exponential", "--to", "yade", *FLUID, *SPHERE, "--speed", "0.3", "--st-range", "20:50"],
+            "--st-range",
+        ),
     ],
 )
 def test_bad_input_is_one_line(command, arguments, named):

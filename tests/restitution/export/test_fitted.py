@@ -117,6 +117,9 @@ def test_json_has_all(fits):
         (lambda fit: fit["points"][2].update(predicted=0.5), "edited by hand"),
         (lambda fit: fit.update(format="restitution-fit/2"), "newer version"),
         (lambda fit: fit.update(remark="mine"), "remark"),
+        (lambda fit: fit["law"].update(text="e_dry*exp(-2*K*(1 + e_dry)/St)"), r"law\.text"),
+        (lambda fit: fit["law"].update(convention="st_star"), r"law\.convention"),
+        (lambda fit: fit.update(stokes_convention="st_d"), "law_stokes_ratio"),
     ],
 )
 def test_edited_and_newer_files_are_refused(fits, tmp_path, edit, named):
@@ -125,6 +128,19 @@ def test_edited_and_newer_files_are_refused(fits, tmp_path, edit, named):
     (tmp_path / "fit.json").write_text(json.dumps(fit))
     with pytest.raises(InputError, match=named):
         fit_closure(tmp_path / "fit.json")
+
+
+@pytest.mark.parametrize("name", ["eq4_exponential", "e_dry*exp(-K*(1 + e_dry)/St)", None])
+def test_a_fit_file_is_never_run(fits, tmp_path, monkeypatch, name):
+    """The text of a formula comes to sympy, which evaluates it as Python: it has to be that of the law."""
+    monkeypatch.chdir(tmp_path)
+    fit = json.loads(fits["law"][0].read_text())
+    bounds = {"K": [0, 200]} if name != "eq4_exponential" else {}
+    fit["law"].update(name=name, bounds=bounds, text="__import__('pathlib').Path('run').touch()")
+    (tmp_path / "fit.json").write_text(json.dumps(fit))
+    with pytest.raises(InputError, match="law"):
+        source_code(fit_closure("fit.json"), "c")
+    assert not (tmp_path / "run").exists()
 
 
 def test_rows_are_close_enough_to_interpolate_between():

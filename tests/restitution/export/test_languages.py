@@ -122,7 +122,7 @@ def given_by(closure: Closure, key: str, rows: np.ndarray, folder) -> np.ndarray
     if key == "c":
         run(tool, "-std=c99", "-Wall", "-Wextra", "-Wno-unused-function", "-Werror", "main.c", "-lm", "-o", "main")
     if key == "fortran":
-        run(tool, "-std=f2008", f"{name}.F90", "main.F90", "-o", "main")
+        run(tool, "-std=f2008", f"{name}.f90", "main.f90", "-o", "main")
     command = {"c": ["./main"], "fortran": ["./main"], "octave": [tool, "--norc", "-q", "main.m"]}
     printed = run(*command.get(key, [tool, f"main{language.suffix}"]), given=text)
     return np.array([[float(x) for x in line.split()] for line in printed.splitlines()])
@@ -146,9 +146,12 @@ def check_itself(closure: Closure, key: str, folder, edit=lambda text: text) -> 
     tool, name, language = program(key), closure.name, LANGUAGES[key]
     file = folder / f"{name}{language.suffix}"
     file.write_text(edit(source_code(closure, key, derivative=True)))
-    if key in ("c", "fortran"):
-        how = ["-std=c99", "-x", "c"] if key == "c" else ["-std=f2008"]
-        run(tool, *how, f"-D{name.upper()}_MAIN", str(file), "-lm", "-o", "self")
+    if key == "c":
+        run(tool, "-std=c99", "-x", "c", f"-D{name.upper()}_MAIN", str(file), "-lm", "-o", "self")
+        command = ["./self"]
+    elif key == "fortran":
+        (folder / "check.f90").write_text(f"use {name}_module; if ({name}_self_check() /= 0) error stop; end\n")
+        run(tool, "-std=f2008", str(file), "check.f90", "-o", "self")
         command = ["./self"]
     elif key == "octave":
         command = [tool, "--norc", "-q", "--eval", f"law = {name}(); exit(law.self_check() ~= 0)"]
@@ -187,6 +190,44 @@ def test_header_serves_c_plus_plus(tmp_path, monkeypatch):
     run("g++", "-std=c++11", "-Wall", "-Wextra", "-Werror", "-DTWO_WAY_LUBRICATION_MAIN", "-x", "c++", "law.h",
         "-o", "self")  # fmt: skip
     run("./self")
+
+
+@pytest.mark.targets
+@pytest.mark.parametrize("where", ["law.mjs", "package/law.js"])
+def test_javascript_of_an_es_module_says_what_it_is_not(where, tmp_path, monkeypatch):
+    node = program("javascript")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "package").mkdir()
+    (tmp_path / "package" / "package.json").write_text('{"type": "module"}')
+    text = source_code(law_closure(laws.get("legendre_2005")), "javascript")
+    (tmp_path / where).write_text(text)
+    done = subprocess.run([node, where], capture_output=True, text=True, check=False)
+    assert done.returncode != 0
+    assert "no ES module" in done.stderr
+    (tmp_path / "package" / "law.cjs").write_text(text)
+    (tmp_path / "package" / "use.js").write_text(
+        'import { legendre_2005 } from "./law.cjs"; console.log(legendre_2005(35, 1));'
+    )
+    assert float(run(node, "package/use.js")) == pytest.approx(np.exp(-1), rel=1e-14)
+
+
+@pytest.mark.targets
+def test_octave_refuses_arrays_and_knows_an_infinite_gap(tmp_path, monkeypatch):
+    tool = program("octave")
+    monkeypatch.chdir(tmp_path)
+    for name in ("legendre_2005", "brandle_de_motta_2013"):
+        (tmp_path / f"{name}.m").write_text(source_code(law_closure(laws.get(name)), "octave", derivative=True))
+    asked = "law = brandle_de_motta_2013(); disp([law.value(Inf), law.slope(Inf)]); law = legendre_2005(); "
+    asked += "try; law.value([-1 50], 0.9); catch error; disp(error.message); end"
+    numbers, said = run(tool, "--norc", "-q", "--eval", asked).splitlines()
+    assert [float(x) for x in numbers.split()] == [0.0, 0.0]  # beyond its cut-off
+    assert "arrayfun" in said
+
+
+@pytest.mark.parametrize("name", REBOUND)
+def test_slopes_of_no_rebound_are_0(name):
+    space = module_of(law_closure(laws.get(name)))
+    assert space[f"{name}_slope"](1e-300, 0.9) == 0.0
 
 
 def module_of(closure: Closure) -> dict:
