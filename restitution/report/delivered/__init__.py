@@ -1,4 +1,4 @@
 """The report of e asked against e delivered in other programs.
 
-Read :mod:`.report`, then :mod:`.content`, :mod:`.plot`, :mod:`.page`.
+Read :mod:`.report`, then :mod:`.content` and :mod:`.languages`, the kept tables, :mod:`.plot`, :mod:`.page`.
 """

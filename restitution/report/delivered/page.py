@@ -11,8 +11,10 @@ from restitution.report.page import render as render_page
 if TYPE_CHECKING:
     import pandas as pd
 
+    from restitution.report.delivered.languages import Agreement
 
-def render(table: pd.DataFrame, summary: list[Summary], svg: str) -> str:
+
+def render(table: pd.DataFrame, summary: list[Summary], languages: list[Agreement], svg: str) -> str:
     """The whole page as text."""
     impacts = steel()
     columns = [(s.program, s.level) for s in summary]
@@ -30,6 +32,7 @@ def render(table: pd.DataFrame, summary: list[Summary], svg: str) -> str:
         ),
         figure=svg,
         summary=summary,
+        languages=languages,
         meant=MEANT,
         closure=impacts.closure,
         conditions=impacts.conditions,

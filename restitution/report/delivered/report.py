@@ -7,10 +7,12 @@ from pathlib import Path
 
 from restitution.errors import Defect, InputError
 from restitution.files import write_folder, write_whole
-from restitution.report.delivered import content, page, plot
+from restitution.report.delivered import content, languages, page, plot
 
 KEPT = "delivered.csv"
-"""The kept table, in the report's folder; everything else is made of it."""
+"""The kept table of drops, in the report's folder."""
+LANGUAGES = "languages.csv"
+"""The kept table of ``python -m tests.languages``, beside it."""
 
 
 def write(folder: str | Path, run: bool = False, say: Callable[[str], None] = lambda text: None) -> list[str]:
@@ -25,11 +27,12 @@ def write(folder: str | Path, run: bool = False, say: Callable[[str], None] = la
         rule = "is not there: what programs deliver is kept in it; --measure runs those that are installed"
         raise InputError(Defect(rule, file=str(kept)))
     table, summary = content.gather(str(kept))
-    drawing = plot.draw(table)
+    drawing, beside = plot.draw(table), Path(folder) / LANGUAGES
+    agreements = languages.gather(beside) if beside.exists() else []
     files: dict[str, str | bytes] = {
         "figure.svg": drawing.svg,
         "figure.png": drawing.png,
-        "index.html": page.render(table, summary, drawing.svg),
+        "index.html": page.render(table, summary, agreements, drawing.svg),
     }
     write_folder(folder, files)
     return [KEPT, *files]

@@ -9,7 +9,7 @@ import pytest
 from restitution.errors import InputError
 from restitution.export.drops import Deck, Installed, NotInstalledError, Program
 from restitution.export.drops.kept import kept_text, measure, read_kept, steel
-from restitution.report.delivered import content, report
+from restitution.report.delivered import content, languages, report
 
 KEPT = Path("reports/export/delivered.csv")
 
@@ -98,3 +98,13 @@ def test_the_command_writes_the_page(tmp_path, capsys):
     assert str(tmp_path / "index.html") in capsys.readouterr().out
     assert main(["report", "export", "--out", str(tmp_path / "empty")]) == 2
     assert "--measure" in capsys.readouterr().err
+
+
+def test_languages_on_record_agree_to_the_digits_of_a_double(tmp_path):
+    kept = languages.gather(KEPT.parent / report.LANGUAGES)
+    assert {a.points for a in kept} == {1000}
+    assert max(a.value for a in kept) < 1e-12
+    (tmp_path / report.KEPT).write_bytes(KEPT.read_bytes())
+    report.write(tmp_path)  # without that table too
+    page = (tmp_path / "index.html").read_text()
+    assert not any(a.program in page for a in kept)
