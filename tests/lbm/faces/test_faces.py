@@ -110,6 +110,21 @@ def test_lid_drives_a_vortex_and_loses_no_mass():
     assert np.abs(u[1] + u[1, :, ::-1]).max() < 1e-14  # mirror symmetry across the lid's direction
 
 
+def test_a_square_cavity_converges_at_second_order():
+    """Extrema at Re 100: Botella & Peyret, Comput. Fluids 27 (1998) 421."""
+    errors = []
+    for n in (16, 32):
+        faces = {"x": "no-slip", "z-": "no-slip", "z+": NoSlip((0.1, 0, 0))}
+        flow = Simulation((n, 4, n), viscosity=0.1 * n / 100, faces=faces)
+        flow.run(250 * n)
+        middle, velocity = slice(n // 2 - 1, n // 2 + 1), flow.velocity[:, :, 0]
+        u, w = velocity[0, middle].mean(0), velocity[2, :, middle].mean(1)
+        found = np.array([u.min(), w.max(), w.min()]) / 0.1
+        errors.append(np.abs(found / [-0.2140424, 0.1795728, -0.2538030] - 1).max())
+    assert errors[1] < 0.03
+    assert np.log2(errors[0] / errors[1]) > 1.7
+
+
 def test_wall_velocity_may_vary_over_the_face():
     faces = {"z-": NoSlip(), "z+": NoSlip(np.broadcast_to([0.02, 0.0, 0.0], (4, 5, 3)))}
     flow = Simulation((4, 5, 8), RATES, faces=faces)
