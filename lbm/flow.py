@@ -42,6 +42,7 @@ class Flow:
     faces : boundary by face ("x-", "x+", ...) or axis ("x", "y", "z"); see :mod:`lbm.faces`.
     force : force density, 3 components, or a function of time giving them; may be exchanged as ``given_force``.
     dtype : float64 or float32.
+    viscosity : in place of ``rates``, for :meth:`lbm.Rates.balanced` of it.
 
     Raises
     ------
@@ -61,18 +62,16 @@ class Flow:
     def __init__(
         self,
         shape: tuple[int, int, int],
-        rates: Rates | RatesByPlace,
+        rates: Rates | RatesByPlace | None = None,
         *,
         faces: dict[str, Face | str] | None = None,
         force: Force | None = None,
         dtype: str | type | np.dtype = np.float64,
+        viscosity: float | None = None,
     ):
         self._dtype = arguments.precision(dtype)
         self._shape = arguments.box(shape, self._dtype.itemsize)
-        if not isinstance(rates, Rates | RatesByPlace):
-            hint = "; call the preset, as Rates.bgk(viscosity)" if callable(rates) else ""
-            raise InputError(f"rates = {arguments.shown(rates)}: give lbm.Rates or lbm.RatesByPlace{hint}")
-        self._rates, self._faces = rates, resolve(faces)
+        self._rates, self._faces = _rates(rates, viscosity), resolve(faces)
         self.given_force = force
         try:
             self.lattice = Lattice(self._shape, tuple(f.kind for f in self._faces), self._dtype)
@@ -282,3 +281,17 @@ def _plain(value):
     if value.size > 3:
         return f"array {value.shape}, SHA-256 {hashlib.sha256(value.tobytes()).hexdigest()[:16]}"
     return value.tolist()
+
+
+def _rates(rates: Rates | RatesByPlace | None, viscosity: float | None) -> Rates | RatesByPlace:
+    """Those given, or the default ones of a viscosity."""
+    if rates is None and viscosity is not None:
+        return Rates.balanced(viscosity)
+    if viscosity is not None:
+        raise InputError("rates and viscosity: the rates set the viscosity; give one of the two")
+    if not isinstance(rates, Rates | RatesByPlace):
+        hint = "; call the preset, as Rates.bgk(viscosity)" if callable(rates) else ""
+        raise InputError(
+            f"rates = {arguments.shown(rates)}: give lbm.Rates, lbm.RatesByPlace, or viscosity = a number{hint}"
+        )
+    return rates

@@ -18,6 +18,7 @@ from lbm.flow import Flow
 from lbm.fluid import fields
 from lbm.fluid.stencil import CS2
 from lbm.io.vtkhdf import write_image
+from lbm.rates import Rates
 from lbm.scales import Scales
 
 __all__ = ["Average", "Checkpoint", "DivergenceGuard", "FieldOutput", "Observer", "Probe", "Sums", "checked"]
@@ -112,8 +113,7 @@ def _warn_of_grid_reynolds(flow: Flow, speed: float) -> None:
     found = speed / flow.rates.viscosity
     if found > shown and not flow.warned_of_grid_reynolds:
         flow.warned_of_grid_reynolds = True
-        quiet = flow.rates.quiet(flow.rates.viscosity)
-        better = f" or {type(quiet).__name__}.quiet" if quiet.grid_reynolds > shown else ""
+        better = " or Rates.balanced" if Rates.balanced(flow.rates.viscosity).grid_reynolds > shown else ""
         warnings.warn(
             f"grid Reynolds number {found:.3g} by step {flow.steps} (speed {speed:.3g}, viscosity "
             f"{flow.rates.viscosity:.3g}): with these rates flows were shown to be stable up to {shown:g}; "

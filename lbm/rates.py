@@ -8,7 +8,7 @@ Viscosities follow from d'Humieres et al. (2002), with c_s^2 = 1/3::
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -103,6 +103,26 @@ class Rates:
         return cls(nu=base.nu, e=1.19, eps=1.4, q=base.q, pi=1.4, m=2 / 3)
 
     @classmethod
+    def balanced(cls, viscosity: float, magic: float = 3 / 16) -> Rates:
+        """Quiet rates that leave half-way walls where :meth:`two_relaxation_times` put them, everywhere the same.
+
+        Even moments as :meth:`quiet`; L_m = 1/s_m - 1/2 = min(1, magic/L_nu), and L_q such that::
+
+            L_nu (L_q + 3 L_m)/4 = magic
+
+        Notes
+        -----
+        Of a flow along x between walls normal to z only A = sum c_x c_z^2 f meets the walls. Of the force on a
+        cell, F = -grad p - du/dt, A must get all and B = sum c_x c_y^2 f nothing, for no streaming changes B. With
+        q_x = 5 (A + B) - 4 j_x, m_x = A - B, and a third of F given to A and to B each, that leaves the
+        non-equilibrium parts -5 F/(3 s_q) of q and -F/s_m of m, and of A half of q/5 + m: that of one rate for
+        both, L = (L_q + 3 L_m)/4. So a slower q makes up for the fast m that keeps a flow quiet.
+        """
+        slow = 1 / cls.two_relaxation_times(viscosity, magic).q - 0.5
+        fast = min(1.0, slow)
+        return replace(cls.quiet(viscosity), q=1 / (4 * slow - 3 * fast + 0.5), m=1 / (fast + 0.5))
+
+    @classmethod
     def bulk(cls, viscosity: float, bulk_viscosity: float, magic: float = 3 / 16) -> Rates:
         """:meth:`two_relaxation_times` with the bulk viscosity chosen separately (d'Humieres et al. 2002)."""
         base = cls.two_relaxation_times(viscosity, magic)
@@ -170,5 +190,6 @@ PRESETS = {
     "dhumieres2002": Rates.dhumieres2002,
     "bgk": Rates.bgk,
     "quiet": Rates.quiet,
+    "balanced": Rates.balanced,
 }
 """Presets that are the same everywhere and follow from the viscosity alone, by name."""

@@ -42,6 +42,8 @@ class Simulation(Flow):
     dtype : float64 or float32; populations are stored as deviations from rest.
     threads : default all that the size of the box is worth; results do not depend on it. Processes started
         after a run must be spawned: a forked one would wait for ever for the threads it has not inherited.
+    viscosity : in cells^2 a step, in place of ``rates``, which then are :meth:`lbm.Rates.balanced`: quiet in fast
+        flow, and they leave walls in their place.
 
     Raises
     ------
@@ -62,18 +64,19 @@ class Simulation(Flow):
     def __init__(
         self,
         shape: tuple[int, int, int],
-        rates: Rates | RatesByPlace,
+        rates: Rates | RatesByPlace | None = None,
         *,
         faces: dict[str, Face | str] | None = None,
         force: Force | None = None,
         dtype: str | type | np.dtype = np.float64,
         threads: int | None = None,
+        viscosity: float | None = None,
     ):
-        super().__init__(shape, rates, faces=faces, force=force, dtype=dtype)
+        super().__init__(shape, rates, faces=faces, force=force, dtype=dtype, viscosity=viscosity)
         self.threads = arguments.threads(threads, math.prod(self.shape))
         self._face_passes = passes.passes(self.faces, self.lattice.grid)
         walls = [isinstance(face, NoSlip) for face in self.faces]
-        table = np.array([layer.scaled(self.dtype) for layer in rates.layers()], self.dtype)
+        table = np.array([layer.scaled(self.dtype) for layer in self.rates.layers()], self.dtype)
         self._places = places(table, walls, self.shape)
         self._planes = np.arange(self.shape[2])
 

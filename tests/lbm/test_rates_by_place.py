@@ -53,6 +53,7 @@ def test_wall_of_a_channel_stays_in_its_place_where_bulk_rates_move_it(axis):
         "bulk": Rates.quiet(nu),
         "by place": RatesByPlace.quiet(nu, reach=3),
         "two": Rates.two_relaxation_times(nu),
+        "balanced": Rates.balanced(nu),
     }.items():
         flow = Simulation(shape, rates, faces={"xyz"[axis]: "no-slip"}, force=force)
         flow.set_flow(
@@ -62,6 +63,7 @@ def test_wall_of_a_channel_stays_in_its_place_where_bulk_rates_move_it(axis):
         profile = np.moveaxis(flow.velocity[1], axis, 2)[0, 0]
         slip[name] = abs(profile[0] - exact[0]) / exact[0]
     assert slip["two"] < 1e-4
+    assert slip["balanced"] < 1e-4
     assert slip["by place"] < 0.1 * slip["bulk"]
 
 

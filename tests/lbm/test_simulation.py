@@ -23,6 +23,8 @@ RATES = Rates.two_relaxation_times(0.02)
         ({"rates": 0.1}, "rates"),
         ({"rates": None}, "rates"),
         ({"rates": Rates.bgk}, "Rates.bgk"),
+        ({"viscosity": 0.1}, "one of the two"),
+        ({"rates": None, "viscosity": -1.0}, "viscosity"),
         ({"dtype": "abc"}, "dtype"),
         ({"dtype": 3}, "dtype"),
         ({"dtype": None}, "dtype"),
