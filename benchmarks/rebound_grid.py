@@ -13,6 +13,7 @@ force, stands below.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -47,9 +48,15 @@ def short(cells: int, lattice_speed: float) -> Case:
     )
 
 
-def rebound(cells: int, lattice_speed: float) -> tuple[float, ...]:
-    """Speeds at the wall before and after contact in m/s, e at the edges, mean speed later, the gap then in m."""
+def rebound(cells: int, lattice_speed: float, preset: Callable | None = None) -> tuple[float, ...]:
+    """Speeds at the wall before and after contact in m/s, e at the edges, mean speed later, the gap then in m.
+
+    ``preset`` gives other rates than the case has, from the viscosity in lattice units.
+    """
     run = ResolvedRun(short(cells, lattice_speed))
+    if preset is not None:
+        run.setup = replace(run.setup, rates=preset(run.flow.viscosity))
+        run.simulation, run.spheres = run.setup.build()
     while not run.finished:
         run.advance()
     contact = run.contacts[0]

@@ -20,6 +20,7 @@ from rich.progress import track
 from rich.table import Table
 
 from lbm import Rates, Simulation
+from lbm.problems import bouncing_spheres as bouncing
 from lbm.problems import spheres as flows
 from lbm.spheres import RESOLVED, Sphere, Spheres, lost_to_grid
 from lbm.spheres.wall_motion import FRACTION
@@ -153,7 +154,7 @@ def settling(case: str, diameter: float) -> Iterator[Check]:
     record = datasets.resource(f"tencate2002_{case}_gap")
     terminal, ratio = record.quoted["terminal_speed_m_s"], record.quoted["maximum_over_terminal_speed"]
     speed, duration = SETTLING[case]
-    run = flows.settling(record.conditions, diameter, speed=speed, terminal=terminal, duration=duration)
+    run = bouncing.settling(record.conditions, diameter, speed=speed, terminal=terminal, duration=duration)
     about = f"ten Cate {case.upper()}, d {diameter:g}, lattice speed {speed:g}"
     source = f"{record.experiment.cite}, table II"
     yield _row("settling, peak speed", about, -run.velocity.min() / terminal, ratio, 0.015, source)
@@ -167,17 +168,17 @@ def settling(case: str, diameter: float) -> Iterator[Check]:
 
 def contact() -> Iterator[Check]:
     """What the sub-steps and the place in the cell change in a rebound at St = 30."""
-    gap, velocity = flows.rebound()
-    e = flows.restitution(gap, velocity)
+    gap, velocity = bouncing.rebound()
+    e = bouncing.restitution(gap, velocity)
     for factor in (0.5, 2):
-        other = flows.restitution(*flows.rebound(fraction=factor * FRACTION))
+        other = bouncing.restitution(*bouncing.rebound(fraction=factor * FRACTION))
         case = f"d 10, St 30, sub-step {factor:g} of the default"
         yield _row("contact, change of e", case, other - e, 0, 0.002, _EXACT)
     for name, places in (
         ("start height", [{"start": 1.5 + s / 10} for s in (0, 0.2, 0.4, 0.6, 0.8)]),
         ("lateral place", [{"lateral": s[:2]} for s in flows.SHIFTS]),
     ):
-        apexes = [flows.apex(*flows.rebound(**place)) for place in places]
+        apexes = [bouncing.apex(*bouncing.rebound(**place)) for place in places]
         yield _row(
             "contact, spread of first apex",
             f"d 10, St 30, {name}",
@@ -186,6 +187,21 @@ def contact() -> Iterator[Check]:
             None,
             _EXACT,
         )
+
+
+def flight() -> Iterator[Check]:
+    """How far the flight of a sphere that is sent off a wall depends on the lattice speed, and on the cells."""
+    reference = bouncing.flight(0.025)
+    for speed, cells, target in ((0.05, 10, 0.005), (0.0125, 10, 0.005), (0.025, 16, None)):
+        gap = bouncing.flight(speed, cells)
+        yield _row("flight, gap", f"lattice speed {speed:g}, d {cells}", gap, reference, target, "at 0.025, d 10")
+
+
+def rest() -> Iterator[Check]:
+    """Change of the base pressure, over rho c_s^2, while a sphere lies on the floor of a closed box."""
+    found = bouncing.base_pressure()
+    yield _row("base pressure, drift at rest", "d 8, nu 0.02, 40 d/c_s", np.ptp(found), 0, 1e-6, _EXACT)
+    yield _row("base pressure at rest", "d 8, nu 0.02", found[-1], 0, None, _EXACT)
 
 
 GROUPS: dict[str, Callable[[], Iterator[Check]]] = {
@@ -207,6 +223,8 @@ GROUPS: dict[str, Callable[[], Iterator[Check]]] = {
         for d in (7.5, 12, 15)
     },
     "contact": contact,
+    "flight": flight,
+    "rest": rest,
 }
 """What is measured together, by name."""
 

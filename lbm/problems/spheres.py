@@ -6,17 +6,19 @@ Lattice units; ``diameter`` is in cells. :mod:`benchmarks.sphere` compares the r
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from lbm.faces.records import NoSlip
 from lbm.rates import Rates
+from lbm.rates_by_place import RatesByPlace
 from lbm.simulation import Simulation
-from lbm.spheres.contact import DryRebound
-from lbm.spheres.film import RESOLVED, Film, lost_to_grid
 from lbm.spheres.spheres import Sphere, Spheres
-from lbm.spheres.wall_motion import FRACTION
+
+Preset = Callable[[float], Rates | RatesByPlace]
+"""Rates from the viscosity."""
 
 STILL = (0.0, 0.0, 0.0)
 SHIFTS = ((0.0, 0.0, 0.0), (0.5, 0.5, 0.5), (0.25, 0.4, 0.1), (0.7, 0.15, 0.35), (0.9, 0.6, 0.8))
@@ -24,7 +26,13 @@ SHIFTS = ((0.0, 0.0, 0.0), (0.5, 0.5, 0.5), (0.25, 0.4, 0.1), (0.7, 0.15, 0.35),
 
 
 def array_drag(
-    cells: int, fraction: float, shift=STILL, *, scheme="linear", viscosity=1 / 6, magic=3 / 16
+    cells: int,
+    fraction: float,
+    shift=STILL,
+    *,
+    scheme="linear",
+    viscosity=1 / 6,
+    preset: Preset = Rates.two_relaxation_times,
 ) -> float:
     """K = F/(6 pi mu a U) of a fixed sphere in a periodic cube of ``cells``, ``fraction`` of it solid, Re -> 0.
 
@@ -34,8 +42,7 @@ def array_drag(
     """
     radius = cells * (3 * fraction / (4 * math.pi)) ** (1 / 3)
     push = 1e-6
-    rates = Rates.two_relaxation_times(viscosity, magic)
-    flow = Simulation((cells,) * 3, rates, force=(push, 0.0, 0.0))
+    flow = Simulation((cells,) * 3, preset(viscosity), force=(push, 0.0, 0.0))
     centre = cells // 2 + np.asarray(shift)
     ball = Spheres([Sphere(radius, 1.0, tuple(centre))], drive=lambda step, gap: STILL, interpolation=scheme)
     flow.add(ball)
@@ -81,6 +88,7 @@ def approach(
     speed=1e-3,
     viscosity=1 / 6,
     scheme="linear",
+    preset: Preset = Rates.two_relaxation_times,
     dtype="float64",
 ) -> Approach:
     """Sphere moved at constant speed to a wall; ``width``, ``height`` of the box and ``start`` gap in diameters.
@@ -89,9 +97,7 @@ def approach(
     """
     shape = (round(width * diameter), round(width * diameter), round(height * diameter))
     radius = diameter / 2
-    flow = Simulation(
-        shape, Rates.two_relaxation_times(viscosity), faces={"z-": "no-slip", "z+": "free-slip"}, dtype=dtype
-    )
+    flow = Simulation(shape, preset(viscosity), faces={"z-": "no-slip", "z+": "free-slip"}, dtype=dtype)
     ramp = diameter**2 / (6 * viscosity)
 
     def drive(step, gap):
@@ -127,6 +133,7 @@ def translation(
     width=6.0,
     scheme="linear",
     crossings=60,
+    preset: Preset = Rates.two_relaxation_times,
     dtype="float64",
 ) -> Translation:
     """Noise of the force on a sphere that crosses ``crossings`` cells of a periodic cube along ``direction``.
@@ -137,7 +144,7 @@ def translation(
     """
     direction = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
     shape = (round(width * diameter),) * 3
-    flow = Simulation(shape, Rates.two_relaxation_times(viscosity), dtype=dtype)
+    flow = Simulation(shape, preset(viscosity), dtype=dtype)
     steps = int(crossings / speed)
     ramp = steps // 2
 
@@ -162,10 +169,18 @@ def translation(
     )
 
 
-def drag_in_frame(diameter: float, sphere_velocity, fluid_velocity, *, viscosity=0.05, width=5.0) -> float:
+def drag_in_frame(
+    diameter: float,
+    sphere_velocity,
+    fluid_velocity,
+    *,
+    viscosity=0.05,
+    width=5.0,
+    preset: Preset = Rates.two_relaxation_times,
+) -> float:
     """Mean drag, against the motion of the sphere through the fluid, after both were set going at once."""
     shape = (round(width * diameter),) * 3
-    flow = Simulation(shape, Rates.two_relaxation_times(viscosity))
+    flow = Simulation(shape, preset(viscosity))
     flow.set_flow(velocity=fluid_velocity)
     velocity = tuple(float(v) for v in sphere_velocity)
     start = Sphere(diameter / 2, 2.0, (3.3, 4.17, 5.06), velocity=velocity)
@@ -187,7 +202,16 @@ class Shear:
     torque: float
 
 
-def shear(diameter: float, *, width=5.0, height=6.0, rate=2e-5, viscosity=1 / 6, shift=STILL) -> Shear:
+def shear(
+    diameter: float,
+    *,
+    width=5.0,
+    height=6.0,
+    rate=2e-5,
+    viscosity=1 / 6,
+    shift=STILL,
+    preset: Preset = Rates.two_relaxation_times,
+) -> Shear:
     """A sphere midway between walls that slide past each other: free to turn, and held."""
     shape = tuple(round(n * diameter) for n in (width, width, height))
     speed = rate * shape[2] / 2
@@ -197,7 +221,7 @@ def shear(diameter: float, *, width=5.0, height=6.0, rate=2e-5, viscosity=1 / 6,
     found = []
     for free in (True, False):
         faces = {"z-": NoSlip((-speed, 0.0, 0.0)), "z+": NoSlip((speed, 0.0, 0.0))}
-        flow = Simulation(shape, Rates.two_relaxation_times(viscosity), faces=faces)
+        flow = Simulation(shape, preset(viscosity), faces=faces)
         flow.set_flow(velocity=start)
         centre = (shape[0] / 2 + shift[0], shape[1] / 2 + shift[1], shape[2] / 2)
         spin = (0.0, rate / 2 if free else 0.0, 0.0)
@@ -209,107 +233,3 @@ def shear(diameter: float, *, width=5.0, height=6.0, rate=2e-5, viscosity=1 / 6,
         found.append(ball.spins[0, 1] if free else ball.torques[0, 1])
     unit = 4 * math.pi * viscosity * (diameter / 2) ** 3 * rate
     return Shear(rate * diameter**2 / viscosity, 2 * found[0] / rate, found[1] / unit)
-
-
-def film(radius: float, viscosity: float, floor: float = 1e-3) -> Film:
-    """Film of what the grid lacks of Taylor's lubrication force."""
-    unit = 6 * math.pi * viscosity * radius**2
-
-    def normal(gap, velocity, onset):
-        return -unit * velocity * lost_to_grid(gap)
-
-    return Film(RESOLVED, floor, normal)
-
-
-@dataclass(frozen=True)
-class Settling:
-    """Time in s, gap in m and velocity in m/s of a sphere that settles on a floor."""
-
-    time: np.ndarray
-    gap: np.ndarray
-    velocity: np.ndarray
-
-
-def settling(
-    conditions, diameter: float, *, speed: float, terminal: float, duration: float, dtype="float64"
-) -> Settling:
-    """Sphere released in a closed box of 100 x 100 x 160 mm, 120 mm above its floor (ten Cate et al. 2002).
-
-    ``speed`` in lattice units stands for ``terminal`` in m/s.
-    """
-    fluid, sphere = conditions.fluid, conditions.sphere
-    dx = sphere.diameter / diameter
-    dt = speed / terminal * dx
-    shape = tuple(round(length / dx) for length in (0.1, 0.1, 0.16))
-    viscosity = fluid.viscosity / fluid.density * dt / dx**2
-    radius = diameter / 2
-    flow = Simulation(
-        shape, Rates.two_relaxation_times(viscosity), faces=dict.fromkeys("xyz", "no-slip"), dtype=dtype
-    )
-    ball = Spheres(
-        [Sphere(radius, sphere.density / fluid.density, (shape[0] / 2, shape[1] / 2, 0.12 / dx + radius))],
-        gravity=(0.0, 0.0, -conditions.gravity * dt**2 / dx),
-        film=film(radius, viscosity),
-        contact=DryRebound(0.5, 2 / 3 * math.pi * radius**3, diameter, viscosity),
-    )
-    flow.add(ball)
-    flow.run(int(duration / dt))
-    track = ball.track()
-    # the nearest wall is the ceiling at first
-    return Settling(track["step"] * dt, (track["z"] - radius) * dx, track["vz"] * dx / dt)
-
-
-def rebound(
-    diameter: float = 10,
-    *,
-    stokes=30.0,
-    ratio=8.0,
-    speed=0.05,
-    start=1.5,
-    lateral=(0.0, 0.0),
-    width=4.0,
-    fraction=FRACTION,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Gap in diameters over steps of a sphere that is brought to ``speed`` and left to bounce off a wall.
-
-    St = (rho_p/rho_f) U d/(9 nu). The film is what the grid lacks, the contact dry with e = 0.97 at
-    1e-3 radii; gravity is what gives the rebound height of a diameter without fluid.
-    """
-    radius = diameter / 2
-    viscosity = ratio * speed * diameter / (9 * stokes)
-    shape = (round(width * diameter),) * 2 + (round(4 * diameter),)
-    flow = Simulation(shape, Rates.two_relaxation_times(viscosity), faces={"z-": "no-slip", "z+": "free-slip"})
-    height = start * diameter
-    ramp = 0.6 * start * diameter / speed
-
-    def drive(step, gap):
-        return (0.0, 0.0, -speed * math.sin(math.pi / 2 * min(1.0, step / ramp))) if gap > 0.5 * diameter else None
-
-    centre = (shape[0] // 2 + lateral[0], shape[1] // 2 + lateral[1], radius + height)
-    ball = Spheres(
-        [Sphere(radius, ratio, centre)],
-        gravity=(0.0, 0.0, -(speed**2) / (2 * diameter)),
-        film=film(radius, viscosity, floor=1e-3 * radius),
-        contact=DryRebound(0.97, 2 / 3 * math.pi * radius**3, diameter, viscosity),
-        drive=drive,
-        fraction=fraction,
-    )
-    flow.add(ball)
-    while not ball.impacts:
-        flow.run(10)
-    flow.run(int(1.5 * diameter / speed))
-    track = ball.track()
-    return track["gap"] / diameter, track["vz"] / speed
-
-
-def restitution(gap: np.ndarray, velocity: np.ndarray, edge: float = 0.1) -> float:
-    """-v_out/v_in where a :func:`rebound` crosses the gap ``edge``, in diameters."""
-    turn = int(np.argmin(gap))
-    into = np.flatnonzero(gap[:turn] > edge)[-1]
-    out = turn + np.flatnonzero(gap[turn:] > edge)[0]
-    return -float(velocity[out] / velocity[into])
-
-
-def apex(gap: np.ndarray, velocity: np.ndarray) -> float:
-    """Height of a :func:`rebound`, in diameters."""
-    return float(gap[np.argmin(gap) :].max())

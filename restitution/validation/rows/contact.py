@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lbm.problems import bouncing_spheres as bouncing
 from lbm.problems import spheres as flows
 from lbm.problems.impulsive_start import added_mass
 from lbm.spheres import lattice_added_mass
@@ -18,16 +19,17 @@ _SMALL = {"diameter": 8, "width": 3, "start": 1.2}
 
 def sub_steps() -> Values:
     """Change of e when the sub-steps at the wall are half and twice as large."""
-    e = flows.restitution(*flows.rebound(**_SMALL))
+    e = bouncing.restitution(*bouncing.rebound(**_SMALL))
     return {
-        f"{factor:g} of the default": flows.restitution(*flows.rebound(**_SMALL, fraction=factor * FRACTION)) - e
+        f"{factor:g} of the default": bouncing.restitution(*bouncing.rebound(**_SMALL, fraction=factor * FRACTION))
+        - e
         for factor in (0.5, 2.0)
     }
 
 
 def place() -> Values:
     """Spread of the first apex over places of the sphere in its cell."""
-    lateral = [flows.apex(*flows.rebound(**_SMALL, lateral=shift[:2])) for shift in flows.SHIFTS[:3]]
+    lateral = [bouncing.apex(*bouncing.rebound(**_SMALL, lateral=shift[:2])) for shift in flows.SHIFTS[:3]]
     return {"across": float(np.ptp(lateral) / np.mean(lateral))}
 
 

@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 from lbm import Rates, Simulation
+from lbm.problems import bouncing_spheres as bouncing
 from lbm.problems import spheres as flows
 from lbm.spheres import RESOLVED, Sphere, Spheres, lost_to_grid
 from lbm.spheres.wall_motion import FRACTION
@@ -88,7 +89,7 @@ def test_slow_changes_of_spin_follow_the_torque_alone():
 def test_sub_steps_and_place_of_contact_do_not_decide_the_rebound():
 
     def e(**options):
-        return flows.restitution(*flows.rebound(8, width=3, start=1.2, **options))
+        return bouncing.restitution(*bouncing.rebound(8, width=3, start=1.2, **options))
 
     assert e(fraction=FRACTION / 2) == pytest.approx(e(), abs=2e-3)
 
