@@ -12,8 +12,8 @@ from restitution.validation.row import Depth, Kind, Reference, Row, Values, near
 
 _SOURCE = "Albensoeder & Kuhlmann, J. Comput. Phys. 206 (2005) 536, tables 5 and 6, 96^3 spectral"
 _SHORTFALL = (
-    "the layer under the lid is one or two cells thick, Re^(-1/2) of the edge (benchmarks/README.md, the lid-driven "
-    "cavity)"
+    "the layer under the lid is one or two cells thick, Re^(-1/2) of the edge (benchmarks/README.md, the "
+    "lid-driven cavity)"
 )
 
 
