@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import secrets
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, nullcontext, suppress
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
-from restitution.locks import hold
+from restitution.locks import hold, replacing
 
 _PART = ".part"
 
@@ -55,6 +55,7 @@ def write_folder(
 ) -> None:
     """Write several files into ``folder``, made if need be: all are written aside first, then renamed in turn.
 
+    A process killed between two renames leaves a file that says so (:data:`restitution.locks.HALF_NEW`).
     ``also`` are further files, by whole path, that belong to the same set.
     """
     folder, made = Path(folder), []
@@ -99,11 +100,13 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
                     rest = rest[stream.write(rest) :]
             except OSError as error:
                 raise _defect(error, name) from None
-        for name, temporary, target in aside:
-            try:
-                temporary.replace(target)
-            except OSError as error:
-                raise _defect(error, name) from None
+        one_set = replacing(aside[0][2].parent, contents) if len(aside) > 1 else nullcontext()
+        with one_set:
+            for name, temporary, target in aside:
+                try:
+                    temporary.replace(target)
+                except OSError as error:
+                    raise _defect(error, name) from None
 
 
 def _remove(aside: Sequence[tuple[str, Path, Path]]) -> None:

@@ -6,8 +6,10 @@ Where files cannot be held (no POSIX locks), nothing is refused and nothing is t
 from __future__ import annotations
 
 import os
+import signal
 import socket
-from collections.abc import Iterator
+import threading
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -20,6 +22,8 @@ except ImportError:
 
 LOCK = ".running"
 """File in a folder that a process writes to: its number and its host."""
+HALF_NEW = "HALF_NEW.txt"
+"""File in a folder while several of its files are replaced; one that stays says that some of them are old."""
 
 
 def hold(number: int) -> bool:
@@ -54,14 +58,57 @@ def sole_writer(folder: Path) -> Iterator[None]:
         stream.close()
 
 
-def _held(path: Path):
+@contextmanager
+def replacing(folder: Path, names: Iterable[str]) -> Iterator[None]:
+    """Within it, files that belong together are renamed into place: by one process at a time, Ctrl-C put off.
+
+    What kills the process, or fails, before all of them have their names leaves :data:`HALF_NEW` beside them.
+    """
+    path = folder / HALF_NEW
+    stream = _held(path, wait=True)
+    try:
+        with _put_off():
+            stream.truncate(0)
+            stream.write(_HALF_NEW.format(names="\n".join(names)).encode("utf-8", "surrogateescape"))
+            yield
+            path.unlink(missing_ok=True)
+    finally:
+        stream.close()
+
+
+@contextmanager
+def _put_off() -> Iterator[None]:
+    """Within it Ctrl-C is only noted, to be raised at the end; signals reach the main thread alone."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    noted: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: noted.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if noted:
+            signal.raise_signal(signal.SIGINT)
+
+
+_HALF_NEW = """\
+These files belong together and were being replaced. If this file stays, that was cut off: some of them are new and
+some are old. Run the same command again; it writes all of them and removes this file.
+
+{names}
+"""
+
+
+def _held(path: Path, wait: bool = False):
     while True:
         try:
             stream = path.open("a+b", buffering=0)
         except OSError as error:
             raise InputError(Defect(f"cannot be written: {error.strerror}", file=str(path.parent))) from None
         try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if fcntl is not None:
+                fcntl.flock(stream, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
         except BlockingIOError:
             stream.seek(0)
             who = stream.read(200).decode("utf-8", "replace").strip() or "another process"
