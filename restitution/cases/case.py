@@ -30,6 +30,8 @@ from restitution.stokes import WIDEST_FILM
 from restitution.units import measured
 
 _LONGEST_NAME = 100
+MOST_ADDED_MASS = 8.0
+"""Over the displaced mass; ten times that of potential flow about a sphere that touches a wall, 0.803."""
 
 
 def _plain(name: str) -> str:
@@ -141,7 +143,7 @@ class ContactModel(Record):
     edge_d: EdgeOfFilm | None = None
     law_edge_d: EdgeOfFilm | None = None
     duration_steps: Positive | None = None
-    added_mass: NonNegative | None = None
+    added_mass: Annotated[float, Field(ge=0, le=MOST_ADDED_MASS, strict=True)] | None = None
 
 
 class Span(Record):

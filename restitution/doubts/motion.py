@@ -38,7 +38,7 @@ def of_track(track: Track, found: Contacts, conditions: Conditions, where: str =
     if not doubts:
         doubts = [
             *_hovering(track, found, conditions),
-            *(_pace(track, found, conditions) or _centre(track, conditions)),
+            *(_of_pace(track, found, conditions) or _centre(track, conditions)),
         ]
     return [replace(doubt, where=where) for doubt in doubts]
 
@@ -119,6 +119,18 @@ def _centre(track: Track, conditions: Conditions) -> list[Doubt]:
         "that of the lowest point (--point centre)"
     )
     return [Doubt("centre", message)]
+
+
+def _of_pace(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
+    """The pace, which of a sphere that would rise has one likely explanation."""
+    doubts, sphere, fluid = _pace(track, found, conditions), conditions.sphere, conditions.fluid
+    if not doubts or sphere.density >= fluid.density:
+        return doubts
+    message = (
+        f"the sphere, {sphere.density:g} kg/m3, is lighter than the fluid, {fluid.density:g} kg/m3, and does not move "
+        "as one that rises to a wall above it: are the densities exchanged, or one of them in g/cm3?"
+    )
+    return [Doubt("lighter", message)]
 
 
 def _pace(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:

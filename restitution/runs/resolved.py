@@ -34,6 +34,8 @@ _LONGEST = 4.0
 """A run without contact is given up after this many times the fall at the reference speed."""
 _LONGEST_RUN = 100
 _NEAR_D = 0.5
+_MOST_STEPS = 1e7
+"""Of a span that is asked for: each is a row of ``motion.csv``, which is kept whole."""
 _STOP = "stop"
 
 
@@ -56,11 +58,20 @@ class ResolvedRun:
                 raise InputError(Defect(str(error), file=file or case.name, field="numerics")) from None
         self.flow = self.setup.flow
         check_edge(self.setup, file or case.name)
+        self._check_span(file or case.name)
         self.warnings += [str(w.message) for w in caught]
         self.guard = DivergenceGuard()
         self._unguarded = 0
         self._stop = 0
         """The step at which the run is looked at next, which an interrupt does not change."""
+
+    def _check_span(self, file: str) -> None:
+        """Refuse a run that nobody could keep, nor wait for."""
+        for name in ("after_contact", "duration"):
+            seconds = getattr(self.case.run, name)
+            if seconds is not None and seconds / self.step_s > _MOST_STEPS:
+                rule = f"is more than {_MOST_STEPS:.0e} steps of {self.step_s:.2g} s: fewer seconds"
+                raise InputError(Defect(rule, file=file, field=f"run.{name}", value=f"{seconds:g}"))
 
     @property
     def step_s(self) -> float:

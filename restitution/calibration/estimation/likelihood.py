@@ -180,13 +180,14 @@ class Likelihood:
     def offsets(self, values: NDArray) -> dict[str, tuple[float, float]]:
         """Offset of each source, as far as the data tell: conditional mean and standard deviation."""
         f, variance, omega = self.moments(np.asarray(values, float))
-        seen, result = self._seen, {}
-        for s, name in enumerate(self.source_names):
-            here = seen & (self.sources == s)
-            shrink = omega**2 / (1 + omega**2 * np.sum(1 / variance[here]))
-            mean = shrink * np.sum((self.observations.e - f)[here] / variance[here])
-            result[name] = float(mean), float(np.sqrt(shrink))
-        return result
+        seen, n = self._seen, self._n_sources
+        w, r = 1 / variance[seen], (self.observations.e - f)[seen]
+        W, S = np.bincount(self.sources[seen], w, n), np.bincount(self.sources[seen], w * r, n)
+        shrink = omega**2 / (1 + omega**2 * W)
+        return {
+            name: (float(mean), float(sigma))
+            for name, mean, sigma in zip(self.source_names, shrink * S, np.sqrt(shrink), strict=True)
+        }
 
     def jacobian(self, values: NDArray) -> NDArray:
         """D f_i / d parameter by central differences, shape (n, parameters); zero for standard deviations."""

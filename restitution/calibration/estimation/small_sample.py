@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,9 +30,6 @@ from scipy.special import gammaincinv, stdtrit
 
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER, Likelihood
 from restitution.calibration.estimation.parameters import prior_precision
-
-MOST_IMPACTS = 2000
-"""Above it the degrees of freedom are not computed: dense matrices, and nothing to gain."""
 
 
 @dataclass(frozen=True)
@@ -83,51 +81,77 @@ class Restriction:
 
     def information(self, values: NDArray) -> NDArray:
         """J^T V^-1 J + Lambda."""
+        return self.J.T @ self._weighed(self._weights(values), self.J) + self.precision
+
+    def _weights(self, values: NDArray) -> _Weights:
         tau, omega = self.deviations(values)
         w = 1 / np.maximum(self.variance + tau**2, 1e-24)
-        weighted = w[:, None] * self.J
-        information = self.J.T @ weighted + self.precision
-        if omega > 0:
-            sums = weighted.T @ self._members
-            shrink = omega**2 / (1 + omega**2 * (w @ self._members))
-            information = information - (sums * shrink) @ sums.T
-        return information
+        sums = self._sums(w)
+        return _Weights(w, sums, 1 / (1 + omega**2 * sums), omega**2)
+
+    def _weighed(self, of: _Weights, x: NDArray) -> NDArray:
+        """V^-1 x of columns x. Within a source V^-1 = diag(w) - omega^2/(1 + omega^2 W) w w^T, W = sum w."""
+        weighed = of.w[:, None] * x
+        if of.omega2 == 0:
+            return weighed
+        return weighed - of.w[:, None] * (of.omega2 * of.shrink[:, None] * self._sums(weighed))[self.sources]
+
+    def _sums(self, x: NDArray) -> NDArray:
+        """The sum over each source, of columns column by column."""
+        if x.ndim == 1:
+            return np.bincount(self.sources, x, self._n_sources)
+        return np.stack([self._sums(column) for column in x.T], axis=1)
 
     def score(self, values: NDArray, r: NDArray) -> NDArray:
         """J^T V^-1 r of the residuals of the measured impacts."""
-        tau, omega = self.deviations(values)
-        w = 1 / np.maximum(self.variance + tau**2, 1e-24)
-        score = self.J.T @ (w * r)
-        if omega > 0:
-            shrink = omega**2 / (1 + omega**2 * (w @ self._members))
-            score = score - (self.J.T @ (w[:, None] * self._members)) @ (shrink * ((w * r) @ self._members))
-        return score
+        return self.J.T @ self._weighed(self._weights(values), r[:, None])[:, 0]
 
     @cached_property
-    def _members(self) -> NDArray:
-        """Which impact is of which source, (n, sources) of 0 and 1."""
-        return (self.sources[:, None] == np.arange(self.sources.max() + 1)).astype(float)
+    def _n_sources(self) -> int:
+        return int(self.sources.max()) + 1
 
     def degrees_of_freedom(self, values: NDArray) -> NDArray:
-        """Satterthwaite's nu of each parameter of the law, at least 1; infinity for a large set."""
-        n, p = self.J.shape
-        if n > MOST_IMPACTS:
-            return np.full(p, np.inf)
-        tau, omega = self.deviations(values)
-        same = (self.sources[:, None] == self.sources).astype(float)
-        V = np.diag(np.maximum(self.variance + tau**2, 1e-24)) + omega**2 * same
-        parts = [part for part, place in zip((np.eye(n), same), self.places, strict=True) if place is not None]
-        inverse = np.linalg.inv(V)
-        VJ = inverse @ self.J
-        C = np.linalg.inv(self.J.T @ VJ + self.precision)
-        P = inverse - VJ @ C @ VJ.T
-        Pk = [P @ part for part in parts]
-        information = np.array([[0.5 * np.sum(a * b.T) for b in Pk] for a in Pk])
-        slopes = np.stack([np.diag(C @ VJ.T @ part @ VJ @ C) for part in parts], axis=1)
+        """Satterthwaite's nu of each parameter of the law, at least 1.
+
+        With P = V^-1 - V^-1 J C J^T V^-1 the information of (tau^2, omega^2) is 1/2 tr(P A P B), A and B being the
+        unit matrix or that of common sources; all traces are sums over sources, so that the cost grows as n.
+        """
+        of, wanted = self._weights(values), [place is not None for place in self.places]
+        w, W, shrink = of.w, of.sums, of.shrink
+        U = self._weighed(of, self.J)
+        C = np.linalg.inv(self.J.T @ U + self.precision)
+        by_source = self._sums(U)
+        common = w[:, None] * (shrink[:, None] * by_source)[self.sources]  # V^-1 Z Z^T U
+        w2, w3 = self._sums(w**2), self._sums(w**3)
+        k = of.omega2 * shrink
+        plain = np.sum(w2 - 2 * k * w3 + k**2 * w2**2)
+        traces = np.array([[plain, np.sum(shrink**2 * w2)], [np.sum(shrink**2 * w2), np.sum((W * shrink) ** 2)]])
+        once = [U.T @ U, by_source.T @ by_source]
+        twice = [
+            [U.T @ self._weighed(of, U), U.T @ common],
+            [common.T @ U, by_source.T @ ((W * shrink)[:, None] * by_source)],
+        ]
+        information = np.array(
+            [
+                [0.5 * (traces[a, b] - 2 * np.trace(C @ twice[a][b]) + np.trace(C @ once[a] @ C @ once[b]))
+                 for b in (0, 1) if wanted[b]]
+                for a in (0, 1) if wanted[a]
+            ]
+        )  # fmt: skip
+        slopes = np.stack([np.diag(C @ once[a] @ C) for a in (0, 1) if wanted[a]], axis=1)
         A = np.linalg.pinv(information, rcond=1e-10, hermitian=True)
         spread = np.einsum("jk,kl,jl->j", slopes, A, slopes)
         with np.errstate(divide="ignore"):
             return np.maximum(2 * np.diag(C) ** 2 / spread, 1.0)
+
+
+class _Weights(NamedTuple):
+    """Of each impact 1/variance; of each source their sum W and 1/(1 + omega^2 W)."""
+
+    w: NDArray
+    sums: NDArray
+    shrink: NDArray
+    omega2: float
 
 
 def threshold(level: float, nu: float) -> float:

@@ -1,0 +1,9 @@
+"""Attempts to break the toolkit, counted: kills, full disks, damaged and hostile files, two processes at once.
+
+Read :mod:`.outcome` (what an attempt may come to), :mod:`.running` (how a command is tried), then the areas:
+:mod:`.kills`, :mod:`.places`, :mod:`.runs`, :mod:`.texts`, :mod:`.fits`. Each area is a record with a generator of
+attempts from a seed; :mod:`.areas` lists all of them, with what an earlier revision came to.
+
+    python -m benchmarks.soak                  # all attempts, 20 to 30 minutes; writes benchmarks/soak.json
+    python -m benchmarks.soak --seconds 60     # as many of each area as there is time for; writes nothing
+"""
