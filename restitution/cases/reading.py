@@ -67,7 +67,7 @@ def read_case(given: str | Path) -> Case:
 def find(given: str | Path) -> Path:
     """The file of a case: as given, or the shipped one of that name."""
     path = Path(given)
-    if path.is_file():
+    if _is_file(path):
         return path
     known = names()
     if str(given) in known:
@@ -102,7 +102,15 @@ def _content(path: Path, depth: int = 0) -> dict[str, Any]:
 def _named_in(path: Path, name: str) -> Path:
     """The file of the case that the file ``path`` names: one beside it, or a shipped one."""
     beside = path.parent / f"{name.removesuffix('.toml')}.toml"
-    return beside if beside.is_file() else find(name)
+    return beside if _is_file(beside) else find(name)
+
+
+def _is_file(path: Path) -> bool:
+    """As Path.is_file, which raises for a name that is too long for one."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
 
 
 def _check_study(case: Case, path: Path) -> None:

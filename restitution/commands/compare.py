@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from restitution.commands import fit_options, options
-from restitution.commands.console import show, show_doubts, show_rows
+from restitution.commands.console import now_and_then, show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.result.ranking import Ranking, Row
@@ -60,8 +59,7 @@ def run(args: argparse.Namespace) -> None:
     doubts = doubts_about(observations, plans[0][1].known_e_dry)
     if args.strict:
         refuse(doubts)
-    progress = (lambda law: print(f"fitting {law} ...", file=sys.stderr)) if sys.stderr.isatty() else None  # noqa: T201
-    ranking = rank(plans, observations, progress=progress)
+    ranking = rank(plans, observations, progress=now_and_then())
     if args.out:
         write_whole(args.out, _csv(ranking))
     show(f"{len(observations)} impacts; higher elpd and lower AIC, BIC are better; d: less than the best")
@@ -139,6 +137,17 @@ def _show(ranking: Ranking) -> None:
         show(f"the data do not separate: {', '.join(contenders)}")
     elif len(ranking.scores) > 1:
         show(f"the data support {contenders[0]} over all others")
+    weighed = {s.label: len(s.loo) - s.refitted for s in ranking.scores if s.refitted < len(s.loo)}
+    if weighed:
+        again = ", ".join(f"{s.label} {s.refitted}" for s in ranking.scores if s.label in weighed and s.refitted)
+        show(
+            "elpd of one left out: by Pareto-smoothed weights of draws"
+            + (
+                f", but for those that a fit left out since their weights cannot be trusted: {again}"
+                if again
+                else ""
+            )
+        )
     unlike = [s.label for s in ranking.scores if s.check < 0.05]
     if unlike:
         show(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from restitution.errors import printable
@@ -30,6 +31,24 @@ def show(what: RenderableType) -> None:
     if sys.stdout is None:  # closed by the caller (`>&-`)
         return
     sys.stdout.write("".join(f"{line.rstrip()}\n" for line in capture.get().splitlines()))
+
+
+def now_and_then(seconds: float = 10.0) -> Callable[[str], None]:
+    """Tells the standard error how far a long work has come: each of its lines at most every so many seconds.
+
+    A terminal is told at once and then each second, a log of a batch job after as many seconds.
+    """
+    terminal = sys.stderr is not None and sys.stderr.isatty()
+    every = 1.0 if terminal else seconds
+    last = time.monotonic() - (every if terminal else 0.0)
+
+    def say(text: str) -> None:
+        nonlocal last
+        if sys.stderr is not None and time.monotonic() - last >= every:
+            last = time.monotonic()
+            print(f"{printable(text)} ...", file=sys.stderr, flush=True)  # noqa: T201
+
+    return say
 
 
 def show_rows(headings: Sequence[str], rows: Iterable[Sequence[str]], right: Iterable[str] = ()) -> None:

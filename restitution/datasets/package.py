@@ -21,7 +21,7 @@ from restitution.tables.schema import read_record
 def _inside(path: str) -> str:
     if not path or not path.isprintable():
         raise ValueError("must be a path of characters that can be printed")
-    if PurePosixPath(path).is_absolute() or ".." in PurePosixPath(path).parts:
+    if "://" in path or PurePosixPath(path).is_absolute() or ".." in PurePosixPath(path).parts:
         raise ValueError("must lie inside the package")
     return path
 

@@ -28,6 +28,8 @@ BEYOND = 1.3
 """Times the terminal speed above which a sphere does not fall: laws of drag agree to a tenth."""
 CENTRE_D = 0.2
 """A record that never comes nearer to the wall, in diameters, has the height of the centre in place of the gap."""
+_THINNEST = 2e-6
+"""Viscosity in Pa s below that of any fluid that spheres are dropped in: liquid helium has 3e-6, gases 1e-5."""
 _LIGHT = 30.0
 """Density in kg/m3 below which one of a solid or a liquid is taken to be in g/cm3."""
 
@@ -37,6 +39,7 @@ def of_track(track: Track, found: Contacts, conditions: Conditions, where: str =
     doubts = _direction(track, found, conditions)
     if not doubts:
         doubts = [
+            *_thin(conditions),
             *_hovering(track, found, conditions),
             *(_of_pace(track, found, conditions) or _centre(track, conditions)),
         ]
@@ -95,6 +98,17 @@ def _convex(track: Track) -> bool:
     return len(seen) > 3 and np.count_nonzero(seen > 0) > 0.5 * len(seen)
 
 
+def _thin(conditions: Conditions) -> list[Doubt]:
+    viscosity = conditions.fluid.viscosity
+    if viscosity >= _THINNEST:
+        return []
+    message = (
+        f"the viscosity, {viscosity:g} Pa s, is below that of any gas: is it kinematic (write its unit, as in "
+        '"10 cSt"), or in another unit?'
+    )
+    return [Doubt("viscosity", message)]
+
+
 def _hovering(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
     """Minima in mid-air."""
     d, wall = conditions.sphere.diameter, found.level or 0.0
@@ -127,8 +141,8 @@ def _of_pace(track: Track, found: Contacts, conditions: Conditions) -> list[Doub
     if not doubts or sphere.density >= fluid.density:
         return doubts
     message = (
-        f"the sphere, {sphere.density:g} kg/m3, is lighter than the fluid, {fluid.density:g} kg/m3, and does not move "
-        "as one that rises to a wall above it: are the densities exchanged, or one of them in g/cm3?"
+        f"the sphere, {sphere.density:g} kg/m3, is lighter than the fluid, {fluid.density:g} kg/m3, and does "
+        "not move as one that rises to a wall above it: are the densities exchanged, or one of them in g/cm3?"
     )
     return [Doubt("lighter", message)]
 

@@ -155,7 +155,10 @@ def steady(law: DragLaw, weight: float, diameter: float, density: float, viscosi
         return float(C_D * density * v**2 / 2 * np.pi * diameter**2 / 4 / weight - 1)
 
     stokes = np.log(weight / (3 * np.pi * viscosity * diameter))
-    return float(np.exp(brentq(excess, stokes - 20, stokes + 1, xtol=1e-14, rtol=1e-14)))
+    low = stokes - 20
+    while excess(low) > 0:  # as in a fluid without any viscosity to speak of
+        low -= 20
+    return float(np.exp(brentq(excess, low, stokes + 1, xtol=1e-14, rtol=1e-14)))
 
 
 def excess_weight(conditions: Conditions) -> float:

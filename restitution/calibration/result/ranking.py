@@ -3,7 +3,8 @@
 - AIC and BIC from the maximum of the true likelihood, scatter and offsets counted as parameters;
 - leave-one-out and leave-one-source-out: every impact, or every source, is predicted by a fit to the others, and
   its log predictive density summed (elpd). The density is normal with the errors, scatter and offset of the impact
-  and the covariance of the parameters; an impact without a rebound has the probability of its limit;
+  and the covariance of the parameters; an impact without a rebound has the probability of its limit. Of many, the
+  fits are replaced by weights of draws where their diagnostic allows it (:mod:`.leaving_out`);
 - a posterior-predictive check: the sum of products of neighbouring pulls in the order of St, against data drawn
   from the fitted law. Estimated scatter makes every law fit in the mean; a wrong shape leaves neighbours alike.
 
@@ -26,6 +27,7 @@ from restitution.calibration.estimation.likelihood import Likelihood
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.result.influence import fit_without
+from restitution.calibration.result.leaving_out import LeavingOut
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.errors import ConventionError, InputError
 
@@ -39,7 +41,10 @@ REPLICATES = 1000
 
 @dataclass(frozen=True)
 class Score:
-    """One law's scores; ``loo`` has one elpd an impact, ``loso`` one a source (empty with a single source)."""
+    """One law's scores; ``loo`` has one elpd an impact, ``loso`` one a source (empty with a single source).
+
+    ``refitted`` of the impacts were left out by a fit, the others by weights of draws.
+    """
 
     label: str
     fit: Fit
@@ -49,6 +54,7 @@ class Score:
     bic: float
     loo: NDArray
     loso: NDArray
+    refitted: int
     check: float
     """P-value of the predictive check: small where neighbours in St deviate alike."""
 
@@ -137,7 +143,7 @@ def rank(
     plans : name and plan of each candidate.
     observations : the impacts.
     seed : of the draws.
-    progress : called with the name of each plan as it is begun.
+    progress : called with the name of each plan as it is begun, and how far it has come.
     intervals : whether parameters get intervals, or the names of those that do; half of the time goes into them.
 
     Returns
@@ -148,8 +154,9 @@ def rank(
     for label, plan in plans:
         if progress:
             progress(label)
+        say = (lambda text, label=label: progress(f"{label}: {text}")) if progress else None
         try:
-            scores.append(score(label, plan, observations, seed, intervals))
+            scores.append(score(label, plan, observations, seed, intervals, say))
         except ConventionError:
             failed[label] = (
                 f"its Stokes number is {plan.model.convention}, that of the data {observations.convention}: fluid "
@@ -163,19 +170,23 @@ def rank(
 
 
 def score(
-    label: str, plan: Plan, observations: Observations, seed: int = 0, intervals: bool | Collection[str] = True
+    label: str,
+    plan: Plan,
+    observations: Observations,
+    seed: int = 0,
+    intervals: bool | Collection[str] = True,
+    say: Callable[[str], None] | None = None,
 ) -> Score:
     """One law's scores."""
     fit = estimate(plan, observations, intervals)
     plain = estimate(plan, observations, False, False, fit.maximum, covariance=False)
     k, n = len(fit.maximum.parameters), len(observations)
     log_likelihood = -plain.maximum.negative_log
-    sources = fit.likelihood.sources
-    loo = np.array([_left_out(fit, np.arange(n) == i) for i in range(n)])
-    levels = np.unique(sources)
-    loso = np.array([_left_out(fit, sources == s) for s in levels]) if len(levels) > 1 else np.zeros(0)
+    leaving = LeavingOut(fit, lambda out: _left_out(fit, out), seed, say)
+    one = leaving.impacts()
+    loso = leaving.sources().elpd if len(fit.likelihood.source_names) > 1 else np.zeros(0)
     aic, bic = 2 * k - 2 * log_likelihood, k * np.log(n) - 2 * log_likelihood
-    return Score(label, fit, k, log_likelihood, aic, bic, loo, loso, _neighbours(fit, seed))
+    return Score(label, fit, k, log_likelihood, aic, bic, one.elpd, loso, one.refitted, _neighbours(fit, seed))
 
 
 def _left_out(whole: Fit, out: NDArray) -> float:

@@ -110,6 +110,19 @@ def test_a_viscosity_in_centipoise_is_named(seed):
     assert (doubt.name, "mPa s" in doubt.message) == ("speed", True)
 
 
+def test_a_sphere_lighter_than_its_fluid_that_falls_is_named():
+    track, c = ordinary(3)
+    light = c.model_copy(update={"sphere": c.sphere.model_copy(update={"density": 0.1 * c.fluid.density})})
+    assert names(track, light) == ["lighter"]
+
+
+def test_a_viscosity_below_that_of_any_gas_is_named():
+    """As a kinematic one of water, taken for a dynamic one."""
+    track, c = ordinary(3)
+    thin = c.model_copy(update={"fluid": c.fluid.model_copy(update={"viscosity": 1e-6})})
+    assert names(track, thin)[0] == "viscosity"
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_densities_in_grams_a_cubic_centimetre_are_named(seed):
     track, c = ordinary(seed)
