@@ -21,7 +21,7 @@ FEWEST = 10
 """Attempts in areas that were not tried before."""
 
 
-def soak(areas: Sequence[Area], seconds: float, seed: int, say=None) -> list[Count]:
+def soak(areas: Sequence[Area], seconds: float, seed: int, say=None, at_most: int | None = None) -> list[Count]:
     """Attempts of each area in turn, as many as were made before, or as there is time for."""
     preload()
     counts = {area.name: Count(area) for area in areas}
@@ -32,7 +32,7 @@ def soak(areas: Sequence[Area], seconds: float, seed: int, say=None) -> list[Cou
             count = counts[area.name]
             most = area.before[0] if area.before else FEWEST
             attempt = next(attempts, None)
-            if attempt is None or count.tried >= most:
+            if attempt is None or count.tried >= min(most, at_most or most):
                 running.remove((area, attempts))
                 continue
             if time.monotonic() > end:
@@ -94,11 +94,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.soak", description=__doc__)
     parser.add_argument("--seconds", type=float, help="stop after so many; all attempts are made without it")
     parser.add_argument("--seed", type=int, default=0, help="of what is done at random (0)")
+    parser.add_argument("--most", type=int, help="attempts of each area, at most")
     parser.add_argument("--area", action="append", help="only areas whose name has this in it")
     args = parser.parse_args()
     areas = [a for a in AREAS if not args.area or any(part in a.name for part in args.area)]
     began = time.monotonic()
-    counts = soak(areas, args.seconds or float("inf"), args.seed, lambda line: print(line, flush=True))
+    counts = soak(areas, args.seconds or float("inf"), args.seed, lambda line: print(line, flush=True), args.most)
     print(table(counts))
     if args.seconds is None and not args.area:
         RESULT.write_text(record(counts, args.seed, time.monotonic() - began))

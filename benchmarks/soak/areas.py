@@ -2,11 +2,33 @@
 
 from __future__ import annotations
 
-from benchmarks.soak import texts
+import signal
+
+from benchmarks.soak import fits, inputs, kills, places, runs, texts
 from benchmarks.soak.outcome import Area
 
+_FIG = ("--runs", str(kills.RUNS))
 AREAS = (
+    Area("kills of simulate at random", (24, 22, 0, 0, 2, 0), kills.simulations((signal.SIGKILL,
+        signal.SIGTERM), 1)),
+    Area("Ctrl-C of simulate, one to three", (12, 9, 0, 0, 3, 0), kills.simulations((signal.SIGINT,), 3)),
+    Area("kills of fit --out --report at random", (9, 9, 0, 0, 0, 0),
+         kills.reports(kills.FIT, {"impacts.csv": inputs.IMPACTS}, "report", 15)),
+    Area("kills placed inside the writing", (4, 0, 0, 0, 4, 0), kills.placed),
+    Area("kills of report fig1 at random", None, kills.reports(("report", "fig1", "--out", "f", *_FIG), {}, "f",
+        90)),
+    Area("kills of report fig2 at random", None, kills.reports(("report", "fig2", "--out", "f", *_FIG), {}, "f",
+        90)),
+    Area("disk full, limits, kinds of output", (41, 40, 1, 0, 0, 0), places.full_disks),
+    Area("kernel cache, thread variables", (19, 14, 2, 0, 2, 1), places.threads),
+    Area("two processes on one --out, cold cache", (3, 2, 0, 0, 1, 0), kills.at_once),
+    Area("checkpoint.h5 cut", (20, 20, 0, 0, 0, 0), runs.cut),
+    Area("checkpoint.h5, one bit flipped", (20, 20, 0, 0, 0, 0), runs.flipped),
+    Area("checkpoint edited, swapped, bombs", (26, 14, 8, 0, 4, 0), runs.edited),
+    Area("flow.npz damaged", (11, 0, 11, 0, 0, 0), runs.pictures),
+    Area("kept runs: tables cut, run.json edited", (42, 17, 4, 0, 21, 0), runs.kept),
     Area("camera tracks", (59, 58, 0, 0, 1, 0), texts.tracks),
+    Area("paths (names, links, pipes, devices)", (16, 13, 1, 0, 0, 2), places.paths),
     Area("conditions TOML", (36, 27, 5, 1, 3, 0), texts.conditions),
     Area("case TOML (simulate, bounce)", (60, 47, 9, 0, 3, 1), texts.cases),
     Area("impacts tables", (35, 31, 2, 1, 1, 0), texts.impact_tables),
@@ -16,4 +38,8 @@ AREAS = (
     Area("formulas (--law)", (82, 82, 0, 0, 0, 0), texts.formulas),
     Area("--bounds, other fit options", (35, 29, 2, 0, 4, 0), texts.fit_options),
     Area("data packages, schemas", (52, 44, 2, 0, 6, 0), texts.packages),
-)
+    Area("fits: points, sigmas, censoring", (27, 26, 0, 0, 1, 0), fits.points),
+    Area("simulations: densities, sizes, drive", (35, 33, 0, 0, 2, 0), fits.simulations),
+    Area("same bytes in any environment", (39, 39, 0, 0, 0, 0), places.same_bytes),
+    Area("closed and full pipes", (7, 7, 0, 0, 0, 0), places.pipes_out),
+)  # fmt: skip

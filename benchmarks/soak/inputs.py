@@ -98,14 +98,16 @@ WORSE_TOML = ("nan", "inf", "-1", "1e308", "1e-320", "true", '"x"', "[]", "{}", 
 """What no size in a TOML file may be."""
 WORSE_JSON = (None, "x", -1e300, 1e300, [], {}, "nan", True, [[1.0]], "\0")
 HOSTILE = (
-    b"\0", b"\xff\xfe", b"[" * 3000, b"{" * 3000, b'"', b"'", b"\n", b"\r", b",", b";", b"=", b"a." * 800, b"9" * 5000,
-    b"\x1b]0;t\x07", b"1e999", b"nan", "१".encode(), b"$\\frac{$", b"<script>", b"#", b"\t", b"-", b"%s" * 50, b"x" * 5000,
+    b"\0", b"\xff\xfe", b"[" * 3000, b"{" * 3000, b'"', b"'", b"\n", b"\r", b",", b";", b"=", b"a." * 800,
+    b"9" * 5000,
+    b"\x1b]0;t\x07", b"1e999", b"nan", "१".encode(), b"$\\frac{$", b"<script>", b"#", b"\t", b"-", b"%s" * 50,
+    b"x" * 5000,
 )  # fmt: skip
 """What parsers stumble over."""
 
 
 def spoiled(content: str | bytes, random: Random) -> bytes:
-    """A text with one to three of: a hostile piece put in, a part cut out, a byte changed, a line twice, an end cut."""
+    """A text with one to three of: a hostile piece, a part cut out, a byte changed, a line twice, an end off."""
     data = bytearray(content.encode() if isinstance(content, str) else content)
     for _ in range(random.randint(1, 3)):
         at = random.randrange(len(data) + 1) if data else 0

@@ -21,15 +21,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-SECONDS = 60.0
-"""Of the clock, on a machine that others use; what is meant to be refused takes about one of the processor."""
+SECONDS = 20
+"""Of the processor; what is meant to be refused takes about one."""
+PATIENCE = 20.0
+"""Seconds of the clock for one of the processor, on a machine that others use."""
 MEGABYTES = 400
 """More than this process has, of which a fork has all."""
 
 
 @dataclass(frozen=True)
 class Done:
-    """What a command did: its status (negative: the signal), what it said, where; why it was stopped, if it was."""
+    """What a command did: its status (negative: the signal), what it said, where; why it was stopped."""
 
     status: int
     out: str
@@ -51,27 +53,29 @@ class Workshop:
         path.write_bytes(content.encode("utf-8", "surrogateescape") if isinstance(content, str) else content)
         return path
 
-    def command(self, *arguments: str, seconds: float = SECONDS) -> Done:
+    def command(self, *arguments: str, seconds: int = SECONDS) -> Done:
         """``restitution ARGUMENTS`` in a fork."""
         from restitution.cli import main
 
         return self.call(lambda: main(list(arguments)), seconds)
 
-    def call(self, work: Callable[[], int | None], seconds: float = SECONDS) -> Done:
+    def call(self, work: Callable[[], int | None], seconds: int = SECONDS) -> Done:
         """Some work in a fork: its status is what it returns."""
         out, err = (tempfile.TemporaryFile() for _ in range(2))  # noqa: SIM115
         ended, alive = os.pipe()
         number = os.fork()
         if number == 0:
             os.close(ended)
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
             self._be_it(work, out.fileno(), err.fileno())
         os.close(alive)
-        in_time = select.select([ended], [], [], seconds)[0]
+        in_time = select.select([ended], [], [], PATIENCE * seconds)[0]
         if not in_time:
             os.kill(number, signal.SIGKILL)
         _, status, used = os.wait4(number, 0)
         os.close(ended)
-        late = "" if in_time else f"{seconds:g} s"
+        killed = os.waitstatus_to_exitcode(status) in (-signal.SIGXCPU, -signal.SIGKILL)
+        late = f"{seconds} s" if killed else ""
         own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         if used.ru_maxrss - own > MEGABYTES * 1024:
             late = f"{MEGABYTES} MB"
@@ -88,7 +92,7 @@ class Workshop:
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
             os.dup2(out, 1)
             os.dup2(err, 2)
-            sys.stdout, sys.stderr = (open(n, "w", encoding="utf-8", errors="replace") for n in (1, 2))  # noqa: SIM115, PTH123
+            sys.stdout, sys.stderr = (os.fdopen(n, "w", encoding="utf-8", errors="replace") for n in (1, 2))
             os.chdir(self.folder)
             try:
                 status = work() or 0
@@ -96,7 +100,7 @@ class Workshop:
                 status = stopped.code if isinstance(stopped.code, int) else 1
             except KeyboardInterrupt:
                 status = 130
-            except BaseException:
+            except BaseException:  # noqa: BLE001
                 traceback.print_exc()
             for stream in (sys.stdout, sys.stderr):
                 if stream is not None and not stream.closed:
@@ -111,15 +115,15 @@ class Workshop:
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "cwd": self.folder} | options
         return subprocess.Popen([sys.executable, *how, *arguments], env=environment, **options)
 
-    def process(self, *arguments: str, seconds: float = 3 * SECONDS, **options) -> Done:
+    def process(self, *arguments: str, seconds: int = 6 * SECONDS, **options) -> Done:
         """The same, waited for."""
         return self.wait(self.start(*arguments, **options), seconds)
 
-    def wait(self, process: subprocess.Popen, seconds: float = 3 * SECONDS) -> Done:
+    def wait(self, process: subprocess.Popen, seconds: int = 6 * SECONDS) -> Done:
         """What a process that was started came to."""
         late = ""
         try:
-            out, err = process.communicate(timeout=seconds)
+            out, err = process.communicate(timeout=PATIENCE / 4 * seconds)
         except subprocess.TimeoutExpired:
             process.kill()
             out, err = process.communicate()
@@ -156,8 +160,10 @@ def preload() -> None:
         "restitution.cli", "restitution.calibration", "restitution.calibration.trajectories.fit",
         "restitution.calibration.result.ranking", "restitution.calibration.result.fit_file",
         "restitution.calibration.estimation.posterior", "restitution.report.fits.report", "restitution.bounce",
-        "restitution.runs.simulate", "restitution.runs.kept", "restitution.runs.point_particle", "restitution.impacts",
-        "restitution.report.drawing", "restitution.export", "matplotlib.pyplot", "rich.table", "iminuit", "sympy", "h5py",
+        "restitution.runs.simulate", "restitution.runs.kept", "restitution.runs.point_particle",
+        "restitution.impacts",
+        "restitution.report.drawing", "restitution.export", "matplotlib.pyplot", "rich.table", "iminuit",
+        "sympy", "h5py",
         "scipy.optimize", "jinja2", "pandas", "restitution.foreign", "restitution.datasets.checks",
     )  # fmt: skip
     for name in names:

@@ -56,7 +56,8 @@ def tracks(random: Random) -> Iterator[Attempt]:
         yield tried(f"track cell {cell[:9]!r}", bad, IMPACTS_OF, may("track.csv"))
     floods = {"rows": "time_s,gap_m\n" + "".join(f"{k},{k}x\n" for k in range(100_000)),
               "columns": ",".join(f"c{k}" for k in range(200_000)) + "\n", "empty": "", "header": "time_s,gap_m\n",
-              "digits": f"time_s,gap_m\n0,{'9' * 5000}\n", "backwards": "\n".join(good.splitlines()[:1] + good.splitlines()[:0:-1])}  # fmt: skip
+              "digits": f"time_s,gap_m\n0,{'9' * 5000}\n",
+              "backwards": "\n".join(good.splitlines()[:1] + good.splitlines()[:0:-1])}  # fmt: skip
     for name, text in floods.items():
         yield tried(f"track {name}", {"track.csv": text} | about, IMPACTS_OF, names("track.csv", left=["out.csv"]))
     scaled = "time_s,gap_m\n" + "".join(
@@ -73,7 +74,8 @@ def conditions(random: Random) -> Iterator[Attempt]:
     """Conditions in TOML."""
     track = {"track.csv": inputs.track()}
     for change, field in (("density = 7800.0", "density = 800.0"), ("viscosity = 0.01", "viscosity = 10.0"),
-                          ("viscosity = 0.01", "viscosity = 1e-12"), ("diameter = 0.003", "diameter = 3.0")):  # fmt: skip
+                          ("viscosity = 0.01", "viscosity = 1e-12"), ("diameter = 0.003",
+                          "diameter = 3.0")):  # fmt: skip
         text = inputs.CONDITIONS.replace(change, field)
         yield tried(f"conditions with {field}", {"conditions.toml": text} | track, IMPACTS_OF, noted)
     whole = {"deep": "a = " + "[" * 2000 + "]" * 2000, "dotted": "a." * 30_000 + "a = 1", "empty": "",
@@ -110,7 +112,8 @@ def cases(random: Random) -> Iterator[Attempt]:
         f'base = "{"x" * 300}"\n': "", "speed = 1e300": "speed = 0.5", "height_d = 1e308": "height_d = 7.0",
         f"density = {'9' * 5000}": "density = 1150", "after_contact = -1": "after_contact = 0.05",
         'law = "eq5"': 'law = "legendre_2005"', 'mode = "soft"': 'mode = "effective"',
-        'mode = "effective"\nadded_mass = 1e9': 'mode = "effective"', "cells_per_diameter = 0": "cells_per_diameter = 6",
+        'mode = "effective"\nadded_mass = 1e9': 'mode = "effective"',
+        "cells_per_diameter = 0": "cells_per_diameter = 6",
         "density = 1.0": "density = 7800", "viscosity = 0.0": "viscosity = 0.05", "gap_d = nan": "gap_d = 2.0",
     }  # fmt: skip
     for (new, old), command in product(changes.items(), both):
@@ -188,8 +191,10 @@ def shown(done: Done) -> Outcome:
 def digitized(random: Random) -> Iterator[Attempt]:
     """Digitised plots, CSV and JSON."""
     tables = {"ragged": "10,0.3\n50,0.6\n60\n70,0.7\n", "odd": "D,,E,\nX,Y,X,Y\n10,0.3,5\n50,0.6\n80,0.7\n",
-              "three columns": "D,\nX,Y\n30,0.3,1\n60,0.6,2\n90,0.7,3\n", "decimal commas": "10,0,3\n20,0,4\n40,0,5\n",
-              "two sets": "D,,E,\nX,Y,X,Y\n10,0.3,20,0.4\n50,0.6,60,9.9\n", "digits": f"10,0.1\n{'9' * 5000},0.5\n40,0.5\n"}  # fmt: skip
+              "three columns": "D,\nX,Y\n30,0.3,1\n60,0.6,2\n90,0.7,3\n",
+              "decimal commas": "10,0,3\n20,0,4\n40,0,5\n",
+              "two sets": "D,,E,\nX,Y,X,Y\n10,0.3,20,0.4\n50,0.6,60,9.9\n",
+              "digits": f"10,0.1\n{'9' * 5000},0.5\n40,0.5\n"}  # fmt: skip
     command = ("fit", "plot.csv", *LAW, *STATED, "--out", "fit.json")
     for name, text in tables.items():
         yield tried(f"plot {name}", {"plot.csv": text}, command, names("plot.csv", left=["fit.json"]))
@@ -207,11 +212,13 @@ def fit_files(random: Random) -> Iterator[Attempt]:
     """Edits of fit.json through ``predict`` and ``design``."""
     ways = (("predict", "edited.json", *PAIR, "--st", "30,150"), ("design", "edited.json", "--e-dry", "0.97"))
     wrong = [
-        (("parameters", 0, "value"), -5.0), (("covariance",), [[1.0]]), (("covariance",), []), (("covariance", 0, 0), -1.0),
+        (("parameters", 0, "value"), -5.0), (("covariance",), [[1.0]]), (("covariance",), []), (("covariance",
+        0, 0), -1.0),
         (("parameters",), []), (("points",), []), (("speed_definition",), "xx"), (("law", "convention"), "xx"),
         (("stokes_range",), [300.0, 9.0]), (("parameters", 0, "degrees_of_freedom"), -3.0),
         (("parameters", 0, "degrees_of_freedom"), 0.0), (("parameters", 0, "name"), "Q"),
-        (("parameters", 0, "intervals"), {}), (("format",), "restitution-fit/9"), (("parameters", 0, "bounds"), [200.0, 0.0]),
+        (("parameters", 0, "intervals"), {}), (("format",), "restitution-fit/9"), (("parameters", 0, "bounds"),
+        [200.0, 0.0]),
     ]  # fmt: skip
 
     def edit(place: tuple, value: object, way: tuple[str, ...], judge: Judge) -> Attempt:
@@ -259,11 +266,16 @@ FLUID_REST = "viscosity=0.01"
 def formulas(random: Random) -> Iterator[Attempt]:
     """Formulas of the user's own: nothing is run but mathematics."""
     bad = [
-        "__import__('os').system('touch ran')", "e_dry.__class__", "St**St**St**St**St", "(" * 3000 + "St", "lambda: St",
-        "f'{St}'", "(a:=St)", "e_dry*exp(-a/St", "exp", "St.real", "[St]", "{St}", "St if St else 1", "open('ran','w')",
-        "e_dry*exp(-a/St)\0", "９*St", "x" * 100_000, "eval('1')", "a" * 300 + "*St", "St;St", "import os", "e_dry*9**9**9",
-        "factorial(99999)*St", "sum(St)", "St @ St", "St % a", "1/0*St", "St==St", "a.b", "not St", "St and a", "`St`",
-        "e_dry*sqrt(-St)*a", "St\n", "#", "", "e_dry", "'x'", "1j*St*a", "None", "True*St", "...", "print(St)", "St<a",
+        "__import__('os').system('touch ran')", "e_dry.__class__", "St**St**St**St**St", "(" * 3000 + "St",
+        "lambda: St",
+        "f'{St}'", "(a:=St)", "e_dry*exp(-a/St", "exp", "St.real", "[St]", "{St}", "St if St else 1",
+        "open('ran','w')",
+        "e_dry*exp(-a/St)\0", "９*St", "x" * 100_000, "eval('1')", "a" * 300 + "*St", "St;St", "import os",
+        "e_dry*9**9**9",
+        "factorial(99999)*St", "sum(St)", "St @ St", "St % a", "1/0*St", "St==St", "a.b", "not St", "St and a",
+        "`St`",
+        "e_dry*sqrt(-St)*a", "St\n", "#", "", "e_dry", "'x'", "1j*St*a", "None", "True*St", "...", "print(St)",
+        "St<a",
     ]  # fmt: skip
     for text in bad:
         yield Attempt(f"formula {text[:20]!r}", lambda shop, text=text: formula(shop, text))
@@ -285,13 +297,19 @@ def formula(shop: Workshop, text: str) -> Outcome:
 def fit_options(_: Random) -> Iterator[Attempt]:
     """Options of ``fit`` that mean nothing, and those that mean something."""
     bad = [
-        ("--fix", "K=-5"), ("--fix", "K=1_0"), ("--fix", "K=18", "--fix", "K=19"), ("--fix", "K=18", "--free", "K"),
+        ("--fix", "K=-5"), ("--fix", "K=1_0"), ("--fix", "K=18", "--fix", "K=19"), ("--fix", "K=18", "--free",
+        "K"),
         ("--prior", "K=1e308+-1e308"), ("--prior", "K=18+-１"), ("--prior", "K=18"), ("--prior", "K=18+-0"),
-        ("--law-stokes", "zz"), ("--law-stokes", "st"), ("--posterior", "--seed", "-1"), ("--separate", "e_dry=source"),
-        ("--separate", "e_dry=material"), ("--separate", "K=weight"), ("--bounds", "K=nan:3"), ("--bounds", "K=3:1"), ("--bounds", "K=1"),
-        ("--bounds", "Q=1:3"), ("--fix", "Q=1"), ("--free", "Q"), ("--e-dry", "2"), ("--e-dry", "nan"), ("--stokes", "xx"),
-        ("--speed", "xx"), ("--edge", "-1"), ("--conditions", "none.toml"), ("--out", "no/such/f.json"), ("--report", "impacts.csv/r"),
-        ("--report", ""), ("--out", "impacts.csv"), ("--posterior", "--seed", "x"), ("--wake", "on"), ("--fix", "K"), ("--column", "stokes"),
+        ("--law-stokes", "zz"), ("--law-stokes", "st"), ("--posterior", "--seed", "-1"), ("--separate",
+        "e_dry=source"),
+        ("--separate", "e_dry=material"), ("--separate", "K=weight"), ("--bounds", "K=nan:3"), ("--bounds",
+        "K=3:1"), ("--bounds", "K=1"),
+        ("--bounds", "Q=1:3"), ("--fix", "Q=1"), ("--free", "Q"), ("--e-dry", "2"), ("--e-dry", "nan"),
+        ("--stokes", "xx"),
+        ("--speed", "xx"), ("--edge", "-1"), ("--conditions", "none.toml"), ("--out", "no/such/f.json"),
+        ("--report", "impacts.csv/r"),
+        ("--report", ""), ("--out", "impacts.csv"), ("--posterior", "--seed", "x"), ("--wake", "on"), ("--fix",
+        "K"), ("--column", "stokes"),
         ("--prior", "K=nan+-1"),
     ]  # fmt: skip
     for option in bad:

@@ -33,11 +33,14 @@ def read(args: argparse.Namespace) -> Flights | None:
     from restitution.errors import Defect, InputError
     from restitution.flights import is_flights, read_flights
     from restitution.foreign import read_foreign
+    from restitution.foreign.long_track import is_long_track
 
     names = {name: own for name, own in args.column if name in _COLUMNS}
-    if not Path(args.track).is_file():
+    if not Path(args.track).exists():
         return None
     settings = options.settings_of(args)
+    if is_long_track(args.track, settings):
+        return None
     table = read_foreign(args.track, settings.decimal)
     if not is_flights(table, names):
         if names.keys() & {"bounce", "apex_m"}:

@@ -51,7 +51,9 @@ def run(args: argparse.Namespace) -> None:
         _write_template(Path(args.template))
         return
     if not args.track:
-        raise InputError("name a track: a CSV file or a shipped record ('restitution data list')")
+        raise InputError("name a track: a CSV file, - for a pipe, or a shipped record ('restitution data list')")
+    if args.track == "-":
+        args.track = "/dev/stdin"
     options.check_output("--out", args.out, filter(None, (args.track, args.conditions, args.settings)))
     if (bounces := flights.read(args)) is not None:
         flights.run(args, bounces)

@@ -81,6 +81,7 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
     from restitution.datasets.checks import fitting_schemas
     from restitution.errors import Defect, InputError
     from restitution.foreign import read_foreign, read_track
+    from restitution.foreign.long_track import read_long_track
     from restitution.foreign.track import is_track
 
     edge(args)
@@ -100,6 +101,9 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
         )
     options.check_track_columns(args.column)
     settings = options.settings_of(args)
+    if (long := read_long_track(args.track, settings)) is not None:
+        conditions = read_conditions(args.conditions) if args.conditions else None
+        return Tracked(long.track(args.sigma), conditions, "measured", long.reading, long.notes)
     table = read_foreign(args.track, settings.decimal)
     kinds = fitting_schemas(table.header, {})
     if not is_track(table, settings) and len(kinds) == 1:

@@ -111,15 +111,28 @@ def _said(time: NDArray, value: NDArray, sigma: float) -> NDArray:
     for frames, order in ((2, 1), (_NEIGHBOURS, 2)):
         if n <= frames:
             continue
-        windows = np.lib.stride_tricks.sliding_window_view(np.arange(n - 1), frames)
-        at = windows[:, -1] + 1
-        t = time[windows] - time[at][:, None]
-        scale = np.abs(t).max(axis=1, keepdims=True)
-        design = (t / scale)[:, :, None] ** np.arange(order + 1)
-        normal = np.linalg.inv(np.einsum("wij,wik->wjk", design, design))
-        weights = np.einsum("wj,wij->wi", normal[:, 0], design)  # of the value at the frame itself
-        away = np.abs(np.einsum("wi,wi->w", weights, value[windows]) - value[at])
-        error = _ERRORS * sigma * np.sqrt(1 + np.sum(weights**2, axis=1))
+        at = np.arange(frames, n)
+        scale = time[at] - time[at - frames]
+        away, squares = -value[at], np.zeros(len(at))
+        # A column at a time: of the fit to the frames before, the value at the frame itself, where t = 0.
+        t = [(time[at - k] - time[at]) / scale for k in range(1, frames + 1)]
+        first = _first_row(t, order)
+        for k, column in enumerate(t, 1):
+            weight = sum(c * column**j for j, c in enumerate(first))
+            away = away + weight * value[at - k]
+            squares += weight**2
+        away, error = np.abs(away), _ERRORS * sigma * np.sqrt(1 + squares)
         better = away - error < said[at, 0] - said[at, 1]
         said[at[better]] = np.stack([away, error], axis=1)[better]
     return said
+
+
+def _first_row(t: list[NDArray], order: int) -> list[NDArray]:
+    """The first row of the inverse of the normal matrix of a polynomial in t, for each frame."""
+    s = [sum(column**j for column in t) for j in range(2 * order + 1)]
+    if order == 1:
+        row = [s[2], -s[1]]
+    else:
+        row = [s[2] * s[4] - s[3] ** 2, s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] ** 2]
+    determinant = sum(s[j] * row[j] for j in range(order + 1))
+    return [c / determinant for c in row]

@@ -74,7 +74,8 @@ def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Do
         return [Doubt("direction", message)]
     # A contact that is taken for an apex turns much faster than gravity does.
     turned = [sum(SLOW * g < fall.acceleration < FAST * g for fall in some) for some in (here, there)]
-    if _convex(track) and len(other.contacts) and (upside > falling or turned[1] > turned[0]):
+    over_there = turned[1] > turned[0] or (upside > falling and turned[1] == turned[0])
+    if _convex(track) and len(other.contacts) and over_there:
         message = (
             "the record is upside down: its flights curve away from the wall, as those of a distance "
             "fallen or of rows of an "

@@ -1,0 +1,214 @@
+"""Kills and interrupts at any moment and amid the writing; two processes at once. Real processes and signals."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from random import Random
+
+from benchmarks.soak import inputs
+from benchmarks.soak.outcome import CLEAN, Attempt, Outcome, broken, sound
+from benchmarks.soak.running import ROOT, Done, Workshop
+
+SIMULATE = ("simulate", "case.toml", "--out", "out")
+FIT = ("fit", "impacts.csv", *inputs.LAW, "--out", "fit.json", "--report", "report")
+RUNS = ROOT / "reports" / "runs"
+SHORT = """
+base = "gondret_st152_10"
+[release]
+kind = "drive"
+gap_d = 0.55
+speed = 0.3
+ramp = 0.0005
+free_below_d = 0.5
+[numerics]
+cells_per_diameter = 6
+lattice_speed = 0.1
+width_d = 2.5
+height_d = 4.5
+[run]
+after_contact = 0.02
+"""
+OFTEN = """
+import sys
+from restitution.runs import simulate
+simulate.SECONDS_PER_CHECKPOINT = 0.2
+from restitution.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command line with a checkpoint every 0.2 s."""
+AT_RENAME = """
+import os, signal, sys
+from pathlib import Path
+at, done, plain = int(sys.argv.pop(1)), [], Path.replace
+def replace(self, target):
+    if len(done) == at:
+        os.kill(os.getpid(), signal.SIGKILL)
+    done.append(target)
+    return plain(self, target)
+Path.replace = replace
+from restitution.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command line, killed before it gives a file its name: that of the number it is given first."""
+LEFT = (".part", "HALF_NEW.txt", ".running")
+
+
+@cache
+def whole_run(folder: str) -> dict[str, object]:
+    """The results of a run that nothing stopped."""
+    shop = Workshop(Path(folder))
+    shop.write("case.toml", SHORT)
+    done = shop.process(*SIMULATE)
+    if sound(done).kind != "clean":
+        raise RuntimeError(done.err)
+    return content(shop.folder / "out")
+
+
+def content(folder: Path) -> dict[str, object]:
+    """All files of a run; of run.json what does not tell when it was made."""
+    found: dict[str, object] = {p.name: p.read_bytes() for p in folder.iterdir()}
+    about = json.loads(found.pop("run.json"))  # type: ignore[arg-type]
+    found["run.json"] = {k: v for k, v in about.items() if k not in ("seconds", "date", "seal")}
+    return found
+
+
+def nothing_left(folder: Path) -> Outcome:
+    """No file of an interrupted writing stays."""
+    left = [str(p.relative_to(folder)) for p in folder.rglob("*") if p.name.endswith(LEFT)]
+    return Outcome("silent", f"left behind: {left[:3]}") if left else CLEAN
+
+
+def simulations(numbers: tuple[signal.Signals, ...], most: int) -> Callable[[Random], Iterator[Attempt]]:
+    """``simulate`` stopped once or more at random, then continued: the same files bit for bit."""
+
+    def attempts(random: Random) -> Iterator[Attempt]:
+        import tempfile
+
+        reference = tempfile.TemporaryDirectory(prefix="soak-whole-")
+        while True:
+            stops = [
+                (random.uniform(0.5, 14), random.choice(numbers), random.randint(1, most))
+                for _ in range(random.randint(1, 2))
+            ]
+            name = "simulate stopped by " + ", ".join(f"{n.name} x {k} at {t:.1f} s" for t, n, k in stops)
+            yield Attempt(name, lambda shop, stops=stops: stopped(shop, stops, whole_run(reference.name)))
+
+    return attempts
+
+
+def stopped(shop: Workshop, stops: list, whole: dict[str, object]) -> Outcome:
+    """One chain of stops, and the run that goes on."""
+    shop.write("case.toml", SHORT)
+    (shop.folder / "out").mkdir()
+    for after, number, times in stops:
+        done = shop.stop(shop.start(*SIMULATE, "--resume", program=OFTEN), after, number, times)
+        if done.status not in (0, 130, -number) or "Traceback" in done.err:
+            return broken(done) or Outcome("unclear", f"status {done.status}: {done.err[-200:]!r}")
+    done = shop.process(*SIMULATE, "--resume")
+    if (outcome := sound(done)).kind != "clean":
+        return outcome
+    found = content(shop.folder / "out")
+    if found != whole:
+        unlike = [name for name in sorted({*found, *whole}) if found.get(name) != whole.get(name)]
+        return Outcome("silent", f"other files after --resume: {unlike}")
+    return CLEAN
+
+
+def reports(
+    command: tuple[str, ...], files: dict[str, str], folder: str, longest: float
+) -> Callable[[Random], Iterator[Attempt]]:
+    """A command that writes a set of files, stopped at random over an older set: old, new, or known to be both."""
+
+    def attempts(random: Random) -> Iterator[Attempt]:
+        while True:
+            number = random.choice((signal.SIGKILL, signal.SIGINT, signal.SIGTERM))
+            after = random.uniform(0.2, longest)
+            yield Attempt(f"{' '.join(command[:2])} stopped by {number.name} at {after:.1f} s",
+                          lambda shop, n=number, t=after: replaced(shop, command, files, folder,
+                              lambda: shop.stop(shop.start(*command), t, n)))  # fmt: skip
+
+    return attempts
+
+
+def replaced(
+    shop: Workshop, command: tuple[str, ...], files: dict[str, str], folder: str, stop: Callable[[], Done]
+) -> Outcome:
+    """A set of files is replaced by a command that is stopped, then by the same command."""
+    for name, text in files.items():
+        shop.write(name, text)
+    for name in ("index.html", "figure.svg", "figure.png", "impacts.csv"):
+        shop.write(f"{folder}/{name}", "old")
+    done = stop()
+    if done.late or "Traceback" in done.err:
+        return broken(done) or Outcome("hang", done.late)
+    place = shop.folder / folder
+    ages = {
+        p.name: p.read_bytes() == b"old" for p in place.iterdir() if p.suffix in (".html", ".svg", ".png", ".csv")
+    }
+    if len({*ages.values()}) > 1 and not (place / "HALF_NEW.txt").exists():
+        return Outcome("silent", f"half new without a word: {ages}")
+    if (again := sound(shop.process(*command))).kind != "clean":
+        return again
+    if any(p.read_bytes() == b"old" for p in place.iterdir()):
+        return Outcome("silent", "files of the older set are left")
+    return nothing_left(shop.folder)
+
+
+def placed(random: Random) -> Iterator[Attempt]:
+    """Kills before a rename, of each command that writes a set of files."""
+    tasks = [
+        (SIMULATE, {"case.toml": SHORT}, "out"), (FIT, {"impacts.csv": inputs.IMPACTS}, "report"),
+        (("report", "fig1", "--out", "fig1", "--runs", str(RUNS)), {}, "fig1"),
+        (("bounce", "case.toml", "--out", "bounce"), {"case.toml": inputs.CASE}, "bounce"),
+        (("report", "fig2", "--out", "fig2", "--runs", str(RUNS)), {}, "fig2"),
+    ]  # fmt: skip
+    while True:
+        for command, files, folder in tasks:
+            at = random.randrange(6)
+            name = f"{' '.join(command[:2])} killed before rename {at}"
+            yield Attempt(name, lambda shop, c=command, f=files, d=folder, at=at: placed_kill(shop, c, f, d, at))
+
+
+def placed_kill(shop: Workshop, command: tuple[str, ...], files: dict[str, str], folder: str, at: int) -> Outcome:
+    """One of them; the number of the process is the same each time in a container, where it can be made so."""
+    return replaced(shop, command, files, folder, lambda: shop.process(str(at), *command, program=AT_RENAME))
+
+
+def at_once(_: Random) -> Iterator[Attempt]:
+    """Two processes with one output, and on one cold cache of kernels."""
+    yield Attempt("two simulations into one folder", two_simulations)
+    yield Attempt("two simulations into one folder, again", two_simulations)
+    yield Attempt("two processes on a cold cache", cold_cache)
+
+
+def two_simulations(shop: Workshop) -> Outcome:
+    """One of them has the folder, the other is refused and names it."""
+    shop.write("case.toml", inputs.CASE)
+    processes = [shop.start(*SIMULATE) for _ in range(2)]
+    done = [shop.wait(p) for p in processes]
+    for one in done:
+        if (bad := broken(one)) is not None:
+            return bad
+    if sorted(d.status for d in done) != [0, 2]:
+        return Outcome("silent", f"statuses {[d.status for d in done]}")
+    refusal = next(d.err for d in done if d.status == 2)
+    return CLEAN if "process" in refusal else Outcome("unclear", refusal[:200])
+
+
+def cold_cache(shop: Workshop) -> Outcome:
+    """Both compile; both are right, and the cache serves a third."""
+    shop.write("case.toml", SHORT)
+    environment = {"LBM_CACHE_DIR": str(shop.folder / "cache")}
+    os.mkdir(shop.folder / "cache", 0o700)  # noqa: PTH102
+    each = [shop.start("simulate", "case.toml", "--out", f"out{k}", environment=environment) for k in range(2)]
+    for done in [shop.wait(p) for p in each]:
+        if (outcome := sound(done)).kind != "clean":
+            return outcome
+    if content(shop.folder / "out0") != content(shop.folder / "out1"):
+        return Outcome("silent", "two results")
+    return nothing_left(shop.folder / "cache")
