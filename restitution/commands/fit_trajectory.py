@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands import fit_options
-from restitution.commands.console import show, show_doubts, show_facts, show_rows
+from restitution.commands.console import now_and_then, show, show_doubts, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.reading.reading import Reading
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> None:
         for law in ((args.law,) if args.law else READINGS)
     }
     edge = H_FILM if how.edge is None else how.edge
-    measured = Measured.of(read_recordings(args.data, how), wakes, edge)
+    measured = Measured.of(read_recordings(args.data, how), wakes, edge, now_and_then())
     show(f"within {edge:g} d of the wall e_eff stands for every viscous force; its law's constants belong to that")
     _show_records(measured)
     doubts = list(of_records(measured.trajectories[measured.preferred]))

@@ -8,7 +8,7 @@ from them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from restitution.bounce import Closures, OwnWake
@@ -45,11 +45,18 @@ class Measured:
 
     @classmethod
     def of(
-        cls, records: Sequence[Recording], wakes: Sequence[bool] = (False, True), edge: float = H_FILM
+        cls,
+        records: Sequence[Recording],
+        wakes: Sequence[bool] = (False, True),
+        edge: float = H_FILM,
+        say: Callable[[str], None] | None = None,
     ) -> Measured:
-        """All records under each kind of model; raises :class:`InputError` for an edge out of range."""
+        """All records under each kind of model; raises :class:`InputError` for an edge out of range.
+
+        ``say`` is told how far the work has come.
+        """
         edge = film_edge(edge)
-        return cls(tuple(records), {wake: whole_trajectories(records, wake, edge) for wake in wakes}, edge)
+        return cls(tuple(records), {wake: whole_trajectories(records, wake, edge, say) for wake in wakes}, edge)
 
     def rebounds_outside(self) -> int:
         """How many rebounds leave the film, of all records."""

@@ -18,7 +18,7 @@ they differ by from a direct integration stands in the result.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -148,9 +148,19 @@ class WholeTrajectory:
         return (flights.contacts[1 : self.bounces + 1] - zero) / (1 + u.rate) + u.time
 
 
-def whole_trajectories(records: Sequence[Recording], wake: bool, edge: float = H_FILM) -> list[WholeTrajectory]:
-    """All records under the model; raises :class:`InputError` naming the record where that cannot be done."""
-    return [whole_trajectory(r, wake, edge) for r in records]
+def whole_trajectories(
+    records: Sequence[Recording], wake: bool, edge: float = H_FILM, say: Callable[[str], None] | None = None
+) -> list[WholeTrajectory]:
+    """All records under the model; raises :class:`InputError` naming the record where that cannot be done.
+
+    ``say`` is told how far the work has come.
+    """
+    found = []
+    for number, r in enumerate(records, 1):
+        if say is not None:
+            say(f"{r.name}: record {number} of {len(records)}, {'with' if wake else 'without'} wake")
+        found.append(whole_trajectory(r, wake, edge))
+    return found
 
 
 def whole_trajectory(r: Recording, wake: bool, edge: float = H_FILM) -> WholeTrajectory:
