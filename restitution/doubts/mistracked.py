@@ -129,10 +129,10 @@ def _said(time: NDArray, value: NDArray, sigma: float) -> NDArray:
 
 def _first_row(t: list[NDArray], order: int) -> list[NDArray]:
     """The first row of the inverse of the normal matrix of a polynomial in t, for each frame."""
-    s = [sum(column**j for column in t) for j in range(2 * order + 1)]
+    s = [np.sum([column**j for column in t], axis=0) for j in range(2 * order + 1)]
     if order == 1:
         row = [s[2], -s[1]]
     else:
         row = [s[2] * s[4] - s[3] ** 2, s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] ** 2]
-    determinant = sum(s[j] * row[j] for j in range(order + 1))
+    determinant = np.sum([s[j] * row[j] for j in range(order + 1)], axis=0)
     return [c / determinant for c in row]
