@@ -74,6 +74,11 @@ def lattice(count: int, dimensions: int) -> NDArray:
 
 def draw(likelihood: Likelihood, best: Maximum, count: int = COUNT) -> Draws:
     """Weighted draws about a maximum."""
+    return finished(likelihood, *weighted(likelihood, best, count))
+
+
+def weighted(likelihood: Likelihood, best: Maximum, count: int = COUNT) -> tuple[NDArray, NDArray]:
+    """Values of the parameters, (draws, parameters), and their weights, without offsets of the sources."""
     proposal = _Proposal(likelihood, best)
     values, log_weight = proposal.draw(count)
     for _ in range(_ROUNDS):
@@ -88,7 +93,7 @@ def draw(likelihood: Likelihood, best: Maximum, count: int = COUNT) -> Draws:
         values, log_weight = proposal.draw(int(min(0.5 * count / worth, _MOST_TIMES) * count))
     weight = _normalised(log_weight)
     kept = weight > _LEAST_WEIGHT * weight.max()
-    return finished(likelihood, values[kept], weight[kept])
+    return values[kept], weight[kept]
 
 
 def finished(likelihood: Likelihood, values: NDArray, weights: NDArray) -> Draws:

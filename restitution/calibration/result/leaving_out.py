@@ -8,14 +8,14 @@ A fit to the others is exact and costs a fit. For many impacts one set of draws 
 
 the largest weights W smoothed by a Pareto distribution, whose shape k says whether they can be trusted (Vehtari et
 al., J. Mach. Learn. Res. 25, 72 (2024)): where k is above :data:`TRUSTED`, the impact is left out by a fit after
-all. That the draws are not of the posterior is weighed in (Magnusson et al., ICML 2019). Impacts of one source
-share its offset, so that y_i is predicted given those of its source that stay (Buerkner, Gabry & Vehtari, Comput.
-Stat. 36, 1243 (2021)); limits enter given the measured ones. Smoothing: the library arviz-stats.
+all. The draws are those of :mod:`.estimation.draws`, weighed towards the posterior (Magnusson et al., ICML 2019).
+Impacts of one source share its offset, so that y_i is predicted given those of its source that stay (Buerkner,
+Gabry & Vehtari, Comput. Stat. 36, 1243 (2021)); limits enter given the measured ones. Smoothing: the library
+arviz-stats.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -23,9 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
+from restitution.calibration.estimation.draws import weighted
 from restitution.calibration.estimation.fitting import Fit
 from restitution.calibration.estimation.likelihood import Likelihood
-from restitution.calibration.estimation.parameters import HalfNormal, log_prior
 
 FEWEST = 200
 """Fits to be made from which draws are weighed instead."""
@@ -33,10 +33,6 @@ DRAWS = 2000
 """Of the parameters."""
 TRUSTED = min(0.7, 1 - 1 / np.log10(DRAWS))
 """Largest shape k with which weights of so many draws are trusted (Vehtari et al. 2024)."""
-_TAILS = 7.0
-"""Degrees of freedom of Student's t that the draws are taken from: tails wider than those of the posterior."""
-_WIDE = 0.1
-"""Part of the draws of a standard deviation that is from its prior."""
 
 
 @dataclass(frozen=True)
@@ -54,10 +50,8 @@ class LeavingOut:
     ``refit`` gives it exactly, for a mask of the impacts; ``say`` is told how far it has come.
     """
 
-    def __init__(
-        self, fit: Fit, refit: Callable[[NDArray], float], seed: int = 0, say: Callable[[str], None] | None = None
-    ):
-        self._fit, self._refit, self._seed = fit, refit, seed
+    def __init__(self, fit: Fit, refit: Callable[[NDArray], float], say: Callable[[str], None] | None = None):
+        self._fit, self._refit = fit, refit
         self._say = say or (lambda _: None)
         self._draws: tuple[NDArray, NDArray] | None = None
 
@@ -89,64 +83,11 @@ class LeavingOut:
         return LeftOut(elpd, len(again), float(kept.max()) if len(kept) else None)
 
     def _posterior(self) -> tuple[NDArray, NDArray]:
-        """Draws about the estimate, and the logarithm of the posterior over their own density.
-
-        Of the law's parameters a multivariate t; standard deviations apart, each a t folded at zero, and a part of
-        them from their prior, which bounds their weights however little the data say of them.
-        """
-        if self._draws is not None:
-            return self._draws
-        best = self._fit.maximum
-        rng, n = np.random.default_rng([self._seed, DRAWS]), len(best.values)
-        mean = np.array([p.mean for p in best.parameters], bool)
-        x = np.array([p.inward(v) for p, v in zip(best.parameters, best.values, strict=True)])
-        slope = np.array([p.slope(v) for p, v in zip(best.parameters, x, strict=True)])
-        C = best.covariance / np.outer(slope, slope)
-        C[np.ix_(mean, ~mean)] = C[np.ix_(~mean, mean)] = 0.0
-        C[np.ix_(~mean, ~mean)] *= np.eye(int((~mean).sum()))
-        root = np.linalg.cholesky(C + 1e-300 * np.eye(n))
-        stretch = np.sqrt(_TAILS / rng.chisquare(_TAILS, (DRAWS, n)))
-        stretch[:, mean] = stretch[:, mean][:, :1]  # one for all of the law
-        z = rng.standard_normal((DRAWS, n)) * stretch
-        drawn = x + z @ root.T
-        log_q = _log_t((z[:, mean] ** 2).sum(axis=1), int(mean.sum()))
-        for j in np.flatnonzero(~mean):
-            wide, prior = rng.random(DRAWS) < _WIDE, best.parameters[j].prior
-            scale = prior.sigma if isinstance(prior, HalfNormal) else root[j, j]
-            drawn[:, j] = np.abs(np.where(wide, scale * rng.standard_normal(DRAWS), drawn[:, j]))
-            near = [_density_t((drawn[:, j] - side * x[j]) / root[j, j]) / root[j, j] for side in (1, -1)]
-            of_prior = 2 * np.exp(-0.5 * (drawn[:, j] / scale) ** 2) / (scale * math.sqrt(2 * math.pi))
-            log_q = log_q + np.log((1 - _WIDE) * sum(near) + _WIDE * of_prior)
-        values = np.array([[p.outward(v) for p, v in zip(best.parameters, row, strict=True)] for row in drawn])
-        log_p = np.array([self._log_posterior(v, row) for v, row in zip(values, drawn, strict=True)])
-        self._draws = values, log_p - log_q
+        """Draws about the estimate, and the logarithm of the posterior over their own density."""
+        if self._draws is None:
+            values, weights = weighted(self._fit.likelihood, self._fit.maximum, DRAWS)
+            self._draws = values, np.log(weights)
         return self._draws
-
-    def _log_posterior(self, values: NDArray, x: NDArray) -> float:
-        """Up to a constant, as a density in the coordinates x; nothing beyond the bounds."""
-        parameters = self._fit.likelihood.parameters
-        for p, at in zip(parameters, x, strict=True):
-            low, high = p.limits
-            if (low is not None and at < low) or (high is not None and at > high):
-                return -np.inf
-        jacobian = sum(at for p, at in zip(parameters, x, strict=True) if p.scale == "log")
-        total = log_prior(parameters, values, every=True) + jacobian - self._fit.likelihood(values)
-        return float(total) if np.isfinite(total) else -np.inf
-
-
-def _density_t(z: NDArray) -> NDArray:
-    """Of Student's t."""
-    return (
-        np.exp(_log_t(z**2, 1))
-        * math.gamma(0.5 * (_TAILS + 1))
-        / math.gamma(0.5 * _TAILS)
-        / math.sqrt(_TAILS * math.pi)
-    )
-
-
-def _log_t(square: NDArray, n: int) -> NDArray:
-    """Logarithm of the density of Student's t in n dimensions, up to a constant."""
-    return -0.5 * (_TAILS + n) * np.log1p(square / _TAILS)
 
 
 def weighed(log_density: NDArray, log_ratio: NDArray) -> tuple[NDArray, NDArray]:

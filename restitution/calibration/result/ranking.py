@@ -182,7 +182,7 @@ def score(
     plain = estimate(plan, observations, False, False, fit.maximum, covariance=False)
     k, n = len(fit.maximum.parameters), len(observations)
     log_likelihood = -plain.maximum.negative_log
-    leaving = LeavingOut(fit, lambda out: _left_out(fit, out), seed, say)
+    leaving = LeavingOut(fit, lambda out: _left_out(fit, out), say)
     one = leaving.impacts()
     loso = leaving.sources().elpd if len(fit.likelihood.source_names) > 1 else np.zeros(0)
     aic, bic = 2 * k - 2 * log_likelihood, k * np.log(n) - 2 * log_likelihood
