@@ -44,10 +44,18 @@ class FlightMap:
 
     def expand(self, x: NDArray) -> Flights:
         """The flights at the parameters ``x``."""
+        return self._flights(self._terms(x) @ self.coefficients)
+
+    def expand_each(self, points: NDArray) -> list[Flights]:
+        """The flights at each of several points, which costs little more than one of them."""
+        return [self._flights(q) for q in np.array([self._terms(x) for x in points]) @ self.coefficients]
+
+    def _terms(self, x: NDArray) -> NDArray:
         d = (x - self.centre) / self.steps
         i, j = self._pairs
-        terms = np.concatenate([[1.0], d, d[i] * d[j]])
-        q = terms @ self.coefficients
+        return np.concatenate([[1.0], d, d[i] * d[j]])
+
+    def _flights(self, q: NDArray) -> Flights:
         n = self.flights
         gap, slope = q[2 * n :].reshape(2, n, POINTS)
         return Flights(np.concatenate([[0.0], q[:n]]), q[n : 2 * n], gap, slope, self.before)
@@ -104,19 +112,27 @@ def expand_about(
     steps: NDArray,
     flights: int,
     before: float,
+    pairs: bool = True,
 ) -> FlightMap:
-    """The map of the first ``flights`` flights about ``centre``; ``integrate`` gives the trajectory at a point."""
+    """The map of the first ``flights`` flights about ``centre``; ``integrate`` gives the trajectory at a point.
+
+    Without ``pairs`` the terms of two different parameters are left out, which most integrations are for.
+    """
     p = len(centre)
     first = integrate(centre)
     unit = np.diag(steps)
     above = [integrate(centre + unit[i]) for i in range(p)]
     below = [integrate(centre - unit[i]) for i in range(p)]
-    both = {(i, j): integrate(centre + unit[i] + unit[j]) for i in range(p) for j in range(i + 1, p)}
+    both = {
+        (i, j): integrate(centre + unit[i] + unit[j]) for i in range(p if pairs else 0) for j in range(i + 1, p)
+    }
     n = min(flights, *(len(path.impacts) for path in (first, *above, *below, *both.values())))
     q0 = flights_of(first, n)
     up, down = ([flights_of(path, n) for path in paths] for paths in (above, below))
     rows = [q0, *((u - d) / 2 for u, d in zip(up, down, strict=True))]
     for i in range(p):
         rows.append(0.5 * (up[i] + down[i]) - q0)
-        rows += [flights_of(both[i, j], n) - up[i] - up[j] + q0 for j in range(i + 1, p)]
+        rows += [
+            flights_of(both[i, j], n) - up[i] - up[j] + q0 if pairs else np.zeros_like(q0) for j in range(i + 1, p)
+        ]
     return FlightMap(centre, steps, np.array(rows), n, before)

@@ -166,11 +166,10 @@ class RecordLikelihood:
         X.zero[:], X.scale[:], X.time[:] = 1.0, h, -u.scale * v * (1 + u.rate)
         if X.has_rate:
             X.rate[:] = u.scale * v * (self.recording.time_s - u.time)
-        for j, step in enumerate(1e-3 * self.flights.steps):
-            more = values.copy()
-            self.named(more).flight[j] += step
-            other = self.model(more)
-            X.flight[:, j] = u.scale * (other(self.own_time(more, other))[0] - h) / step
+        steps = 1e-3 * self.flights.steps
+        others = self.flights.expand_each(u.flight + np.diag(steps))
+        for j, (step, other) in enumerate(zip(steps, others, strict=True)):
+            X.flight[:, j] = u.scale * (other(self.own_time(values, other))[0] - h) / step
         return self.recording.gap_m - u.zero - u.scale * h, X.array
 
     def marginal(self) -> Marginal:

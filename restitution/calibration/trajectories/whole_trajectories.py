@@ -39,6 +39,8 @@ from restitution.stokes import H_FILM, Speed, convention
 
 _ROUNDS = 10
 """Maps about better and better centres before the estimate is given up."""
+_FEW = 9
+"""Unknowns up to which every map has the terms of their pairs; of more, those about a known centre alone."""
 _E_STEP = 0.02
 """Steps of the first map in each restitution."""
 _START_STEP = 0.02
@@ -173,7 +175,8 @@ def whole_trajectory(r: Recording, wake: bool, edge: float = H_FILM) -> WholeTra
     for _ in range(_ROUNDS):
         centre[1:] = np.clip(centre[1:], steps[1:], 1 - steps[1:])
         before = {"height": 0.0, "speed": -centre[0], "impact": -fall_speed(r)}[r.start.kind]
-        flights = expand_about(integrate, centre, steps, len(centre), before)
+        pairs = narrow or len(centre) <= _FEW
+        flights = expand_about(integrate, centre, steps, len(centre), before, pairs)
         if flights.flights < len(centre):  # a last bounce so low that the model has none, or not in all of the map
             if flights.flights < 2:
                 raise InputError(Defect("the model does not bounce where the record does", file=r.name))
