@@ -122,7 +122,7 @@ def _values(rows: list[str], known: dict[str, Row], way: str, how: dict[str, str
 
 
 def _differences(ways: dict[str, dict]) -> dict[str, dict[str, dict[str, float]]]:
-    first = ways["1 thread"]
+    first = ways.get("1 thread", {})
     found: dict[str, dict[str, dict[str, float]]] = {}
     for way, rows in ways.items():
         for name, row in rows.items():
