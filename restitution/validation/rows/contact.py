@@ -39,12 +39,12 @@ def impulse(diameter: int) -> Values:
 
 
 def stretched(case: str, steps: float) -> Values:
-    """Restitution of a short rebound with the contact stretched in time, less that of an instantaneous one."""
+    """e at 0.1 d of a short rebound with the contact stretched in time, less that of an instantaneous one."""
     found = {}
     for mode in ("dry", "soft_linear", "soft_hertz"):
         of = short(case, {"mode": mode} if mode == "dry" else {"mode": mode, "duration_steps": steps})
-        run = finished(of)
-        found[mode] = run.contacts[0].speed_out_m_s / run.contacts[0].speed_in_m_s
+        motion = finished(of).motion()
+        found[mode] = flows.restitution(motion.gap_m.to_numpy() / of.sphere.diameter, motion.vz_m_s.to_numpy())
     return {mode: found[mode] - found["dry"] for mode in ("soft_linear", "soft_hertz")}
 
 
@@ -100,9 +100,12 @@ ROWS = (
         {"case": "gondret_st152_10_imposed", "values": (0.7,)},
     ),
     Row(
-        "contact-time", "change of e at contact where the contact is stretched over 20 steps", Kind.ANALYTICAL,
+        "contact-time", "change of e at 0.1 d where the contact is stretched over 20 steps", Kind.ANALYTICAL,
         "numerics decide no rebound", (at_most("soft_linear", 0.02), at_most("soft_hertz", 0.02)),
         "the error of the best measured dry e (0.02, data of steel and glass in air)", stretched,
         {"case": "gondret_st152_10", "steps": 20.0}, Depth.DEFAULT,
+        known=dict.fromkeys(
+            ("soft_linear", "soft_hertz"), "a contact that takes time keeps the sphere in the film for longer: 7 % of e"
+        ),
     ),
 )  # fmt: skip
