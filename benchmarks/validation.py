@@ -37,7 +37,7 @@ SOLVER = (
     "added-mass-touching", "film-force", "wall-approach-10", "sub-steps", "impact-momentum", "imposed-restitution",
     "flight-li_drop1", "restart",
 )  # fmt: skip
-"""Rows that are run for an error of the solver; those of kept runs would be stale, which says too that all moved."""
+"""Rows that are run for an error of the solver; those of kept runs are stale then and say no more."""
 PARTICLE = (
     "film-force", "basset-fall", "oscillating-sphere", "stokes-number", "law-delivered", "law-check-values",
     "exact-resistance", "drag-law",

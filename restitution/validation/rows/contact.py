@@ -105,7 +105,7 @@ ROWS = (
         "the error of the best measured dry e (0.02, data of steel and glass in air)", stretched,
         {"case": "gondret_st152_10", "steps": 20.0}, Depth.DEFAULT,
         known=dict.fromkeys(
-            ("soft_linear", "soft_hertz"), "a contact that takes time keeps the sphere in the film for longer: 7 % of e"
+            ("soft_linear", "soft_hertz"), "a contact that takes time keeps the sphere in the film: 7 % of e"
         ),
     ),
 )  # fmt: skip
