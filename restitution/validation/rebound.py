@@ -6,6 +6,7 @@ One set of measures for whoever made the trajectory: the resolved solver, the po
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
 
@@ -68,11 +69,11 @@ class Errors:
         return math.hypot(self.grid, self.given)
 
 
-def references(record: str, errors: Errors) -> tuple[Reference, ...]:
+def references(record: str, errors: Errors, but: Collection[str] = ()) -> tuple[Reference, ...]:
     """What a trajectory is held against: the record's bounces, each with its error, twice that of reading.
 
     Of the n-th bounce the apex goes as e^(2n), so a relative error of what was given and of the grid is n times
-    that of the first apex; a time goes as the root of a height.
+    that of the first apex; a time goes as the root of a height. ``but``: labels that a run does not reach.
     """
     r, found = datasets.resource(record), record_bounces(record)
     sigma, offset, scale = (
@@ -98,7 +99,7 @@ def references(record: str, errors: Errors) -> tuple[Reference, ...]:
     d = r.conditions.sphere.diameter
     highest = reference_apexes(record, found)[0] / d
     held.append(at_most("rms, d", errors.both * highest / math.sqrt(2) + 2 * offset.get("gap_m", 0.0) / d))
-    return tuple(held)
+    return tuple(reference for reference in held if reference.label not in but)
 
 
 def settling_values(velocity_m_s: np.ndarray, record: str) -> Values:
