@@ -117,8 +117,8 @@ def _row(name: str, measure: Scored, errors: Errors, why: str) -> Row:
     case = read_case(name)
     return Row(
         f"rebound-{name}", f"rebounds of {case.record}, case {name}", Kind.MEASURED, _source(case),
-        lambda: references(case.record, errors, BEYOND.get(name, ())), why, measure, {"case": name}, Depth.QUICK, "as named",
-        KNOWN.get(name, {}), content_of(case),
+        lambda: references(case.record, errors, BEYOND.get(name, ())), why, measure, {"case": name}, Depth.QUICK,
+        "as named", KNOWN.get(name, {}), content_of(case),
     )  # fmt: skip
 
 
