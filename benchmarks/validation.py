@@ -44,7 +44,7 @@ PARTICLE = (
 )  # fmt: skip
 """Rows that are run for an error of laws and of the point particle."""
 _HASH = "return digest.hexdigest()[:16]"
-"""How the kernels of a program are known (lbm/fluid/cache.py); an error outside them is run with the program's own."""
+"""How kernels are known (lbm/fluid/cache.py); an error outside them is run with the kernels of the program."""
 
 
 @dataclass(frozen=True)
