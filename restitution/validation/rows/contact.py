@@ -44,7 +44,7 @@ def stretched(case: str, steps: float) -> Values:
     for mode in ("dry", "soft_linear", "soft_hertz"):
         of = short(case, {"mode": mode} if mode == "dry" else {"mode": mode, "duration_steps": steps})
         motion = finished(of).motion()
-        found[mode] = flows.restitution(motion.gap_m.to_numpy() / of.sphere.diameter, motion.vz_m_s.to_numpy())
+        found[mode] = bouncing.restitution(motion.gap_m.to_numpy() / of.sphere.diameter, motion.vz_m_s.to_numpy())
     return {mode: found[mode] - found["dry"] for mode in ("soft_linear", "soft_hertz")}
 
 
