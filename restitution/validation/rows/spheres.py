@@ -117,7 +117,7 @@ _CELL = (
 )
 _CLOUD = "twice the scatter of the measured points about their own trend"
 _LAYER = (
-    "the boundary layer, d/Re^(1/2), is one cell thick at Re 100: drag is 12 % high at ten cells, 3 % at Re 50"
+    "the boundary layer, d/Re^(1/2), is one cell thick at Re 100: drag is 12 % high there, 3 % at Re 50"
 )
 _ROOS = "Roos & Willmarth, AIAA J. 9 (1971) 285, towed spheres"
 _COARSE = (50.0, 100.0)
