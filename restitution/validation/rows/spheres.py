@@ -116,9 +116,7 @@ _CELL = (
     "met to the 15 % by which a mean over cells is off"
 )
 _CLOUD = "twice the scatter of the measured points about their own trend"
-_LAYER = (
-    "the boundary layer, d/Re^(1/2), is one cell thick at Re 100: drag is 12 % high there, 3 % at Re 50"
-)
+_LAYER = "the boundary layer, d/Re^(1/2), is one cell thick at Re 100: drag is 12 % high there, 3 % at Re 50"
 _ROOS = "Roos & Willmarth, AIAA J. 9 (1971) 285, towed spheres"
 _COARSE = (50.0, 100.0)
 _STEADY = (20.0, 50.0, 100.0, 200.0)
