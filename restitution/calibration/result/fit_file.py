@@ -17,6 +17,8 @@ from restitution.tables.schema import read_record
 
 _ROUND_OFF = 1e-6
 """How far below zero an eigenvalue of a correlation matrix may lie that was written with all its digits."""
+_AT_A_BOUND = 1e-4
+"""Of the width of the bounds: an estimate nearer than that is at one."""
 _LEAST_FREEDOM = 0.1
 """Below, an interval of Student's t has no end that can be written."""
 _LARGEST_VARIANCE = LARGEST**2
@@ -178,6 +180,11 @@ def _chain(result: FitResult) -> Iterator[Finding]:
         yield "posterior.draws", len(chain.draws), f"must be rows of {n} numbers, at least one"
 
 
+def _at_a_bound(value: float, bounds: tuple[float, float]) -> bool:
+    low, high = bounds
+    return min(value - low, high - value) <= _AT_A_BOUND * (high - low)
+
+
 def _draws(result: FitResult) -> Iterator[Finding]:
     own = result.draws
     if own is None:
@@ -193,7 +200,8 @@ def _draws(result: FitResult) -> Iterator[Finding]:
         slack = _ROUND_OFF * 10 * max(abs(low), abs(high))
         if low < p.bounds[0] - slack or high > p.bounds[1] + slack:
             yield f"draws.{p.name}", f"{low:g} to {high:g}", f"leave the bounds {p.bounds[0]:g} to {p.bounds[1]:g}"
-        elif p.mean and not low - slack <= p.value <= high + slack and p.value not in p.bounds:
+        # An estimate at a bound, which the search comes near to only, has all its draws on one side.
+        elif p.mean and not low - slack <= p.value <= high + slack and not _at_a_bound(p.value, p.bounds):
             yield f"draws.{p.name}", f"{low:g} to {high:g}", f"are not about the estimate {p.value:g}"
     if any(abs(x) > LARGEST for row in own.rows for x in row):
         yield "draws.rows", None, f"must lie within {LARGEST:g}"

@@ -113,7 +113,7 @@ def test_json_has_all(fits):
     ("edit", "named"),
     [
         (lambda fit: fit["parameters"][0].update(value=1.01 * fit["parameters"][0]["value"]), "edited by hand"),
-        (lambda fit: fit["parameters"][0].update(value=150.0), "edited by hand"),
+        (lambda fit: fit["parameters"][0].update(value=150.0), "not about the estimate"),
         (lambda fit: fit["points"][2].update(predicted=0.5), "edited by hand"),
         (lambda fit: fit.update(format="restitution-fit/2"), "newer version"),
         (lambda fit: fit.update(remark="mine"), "remark"),
