@@ -100,6 +100,21 @@ def test_walls_of_yade_as_they_were_run(steel):
         assert law_of_yade(np.inf, e, 0.0, SHARE_AT_A_WALL) == pytest.approx(run, abs=0.003)
 
 
+def test_walls_and_pairs_get_each_their_own_constant(steel):
+    """By hand: of two of the spheres St is twice that at a wall, at the same relative speed."""
+    at_wall, request = 0.3 * 7800 * 0.003 / 0.09, Request(0, 0.3, 0.02, RANGE)
+    text = lammps(steel, request)
+    typed_in = {
+        k: float(re.search(rf"^{k} .*hooke \S+ (\S+)", text, re.MULTILINE)[1]) for k in ("pair_coeff", "fix")
+    }
+    assert typed_in == pytest.approx({"pair_coeff": law(2 * at_wall), "fix": law(at_wall)}, rel=1e-8)
+    said = " ".join(liggghts(steel, request).replace("#", " ").split())
+    assert float(re.search(r"gives two of them ([\d.]+)", said)[1]) == pytest.approx(law(2 * at_wall), rel=1e-5)
+    two = Conditions.model_validate(PAIR | {"partner": {"diameter": 0.003, "density": 7800.0}})
+    pair = impacts_of(law_closure(laws.get("eq4_exponential")), two, None, "test")
+    assert not any("wall/gran" in text for text in (lammps(pair, request), liggghts(pair, request)))
+
+
 def test_what_cannot_be_is_refused(steel):
     conditions = Conditions.model_validate(PAIR)
     with pytest.raises(InputError, match="twice"):

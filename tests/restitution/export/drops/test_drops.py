@@ -174,6 +174,15 @@ def test_two_unlike_spheres_rebound_by_reduced_mass_and_radius(key):
 
 
 @pytest.mark.targets
+def test_lammps_says_that_it_needs_newton_off():
+    """LAMMPS's default is on: a contact across a boundary would be damped on one side only."""
+    found, pair = installed("lammps", 2), deck_of_a_pair("lammps")
+    text = pair.files[pair.main].replace("newton off", "newton on")
+    with pytest.raises(InputError, match="damped on one side"):
+        run_deck(Deck(pair.main, {pair.main: text}), found, 1)
+
+
+@pytest.mark.targets
 @pytest.mark.parametrize("key", ["lammps", "liggghts", "yade"])
 def test_every_contact_has_its_own_speed(key):
     """Between two walls 4 mm apart: bottom, top and bottom again, each e by the speed that is left."""
