@@ -44,6 +44,8 @@ _FALL = 12.0
 _ROUNDS = 4
 _MOST_TIMES = 4.0
 """By how much the number of draws is raised where each is worth less than half of one."""
+MOST_SOURCES = 100
+"""Whose offsets are drawn."""
 _LEAST_WEIGHT = 1e-9
 """Of the greatest; lighter draws are left out."""
 
@@ -97,9 +99,12 @@ def weighted(likelihood: Likelihood, best: Maximum, count: int = COUNT) -> tuple
 
 
 def finished(likelihood: Likelihood, values: NDArray, weights: NDArray) -> Draws:
-    """Draws of the parameters with an offset of each source drawn from what its impacts leave open."""
+    """Draws of the parameters with an offset of each source drawn from what its impacts leave open.
+
+    Of more than :data:`MOST_SOURCES` none is drawn: a file of all of them would be larger than is read.
+    """
     names = tuple(p.name for p in likelihood.parameters)
-    if OFFSET not in names:
+    if OFFSET not in names or len(likelihood.source_names) > MOST_SOURCES:
         return Draws(names, values, weights / weights.sum(), (), np.zeros((len(values), 0)))
     known = np.array([list(likelihood.offsets(row).values()) for row in values])  # (draws, sources, 2)
     z = np.random.default_rng(0).standard_normal(known.shape[:2])

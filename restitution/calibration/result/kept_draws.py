@@ -67,7 +67,7 @@ def one_more(draws: Draws, result: FitResult, source: str | None) -> OneMore:
     if source in draws.sources:
         return OneMore(draws.offsets[:, draws.sources.index(source)], tau)
     if omega.any():
-        rule = "the fit was written by an earlier version, without the offsets of its sources: run it again"
+        rule = "the fit keeps no offsets of its sources: an earlier version wrote it, or they are too many"
         raise InputError(Defect(rule, field="--source", value=source))
     return OneMore(np.zeros(len(tau)), tau)
 
