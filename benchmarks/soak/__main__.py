@@ -19,6 +19,8 @@ from benchmarks.soak.running import ROOT, Workshop, preload
 RESULT = ROOT / "benchmarks" / "soak.json"
 LIMIT = 1500
 """Seconds; on a machine that is not busy with other things all attempts are made in less."""
+SHORT = 300.0
+"""A soak of fewer seconds leaves out what is slow."""
 FEWEST = 10
 """Attempts in areas that were not tried before."""
 
@@ -103,6 +105,7 @@ def main() -> int:
     parser.add_argument("--area", action="append", help="only areas whose name has this in it")
     args = parser.parse_args()
     areas = [a for a in AREAS if not args.area or any(part in a.name for part in args.area)]
+    areas = [a for a in areas if not a.slow or args.area or args.seconds >= SHORT]
     began = time.monotonic()
     counts = soak(areas, args.seconds, args.seed, lambda line: print(line, flush=True), args.most)
     print(table(counts))

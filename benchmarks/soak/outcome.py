@@ -39,11 +39,15 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Area:
-    """Attempts of one kind. ``before``: attempts, then counts of :data:`KINDS`, of revision 0a77d89."""
+    """Attempts of one kind. ``before``: attempts, then counts of :data:`KINDS`, of revision 0a77d89.
+
+    ``slow``: one may take a minute, so that a short soak leaves them out.
+    """
 
     name: str
     before: tuple[int, int, int, int, int, int] | None
     attempts: Callable[[Random], Iterator[Attempt]]
+    slow: bool = False
 
 
 @dataclass
