@@ -35,15 +35,6 @@ LAW = "eq4_exponential"
 HEADS = ("record", "film_edge_d", "wake", "ln_evidence", "impact", "e_eff", "e_eff_sigma")
 
 
-def without(measured: Measured, left_out: str | None) -> Measured:
-    """The same trajectories, those of one record left out."""
-    records = tuple(r for r in measured.records if r.name != left_out)
-    trajectories = {
-        wake: [t for t in found if t.recording.name != left_out] for wake, found in measured.trajectories.items()
-    }
-    return Measured(records, trajectories, measured.edge)
-
-
 def own_model(measured: Measured, record: str) -> WholeTrajectory:
     """The trajectory of a record under the model that its own frames prefer."""
     both = [t for found in measured.trajectories.values() for t in found if t.recording.name == record]
@@ -73,7 +64,7 @@ def by_edge(everything: list[Measured]) -> Table:
     for column in ("records", "wake", *(f"{m.edge:g} d" for m in everything)):
         made.add_column(column)
     for left_out in (None, *RECORDS):
-        sets = [without(m, left_out) for m in everything]
+        sets = [m.without(() if left_out is None else (left_out,)) for m in everything]
         for wake in (False, True):
             cells = (constant(m, wake) + ("*" if m.preferred == wake else "") for m in sets)
             made.add_row(f"without {left_out}" if left_out else "all", "yes" if wake else "no", *cells)

@@ -90,13 +90,17 @@ class QuotedImpact(Record):
 
 
 class Conditions(Record):
-    """Everything but the track itself. ``partner`` is the second sphere where there is no wall."""
+    """Everything but the track itself. ``partner`` is the second sphere where there is no wall.
+
+    ``release`` is the gap in m from which the sphere was let go at rest, where that is known.
+    """
 
     fluid: Fluid
     sphere: Sphere
     wall: Wall | None = None
     partner: Sphere | None = None
     impact: QuotedImpact | None = None
+    release: Length | None = None
     gravity: Acceleration = 9.81
     source: str | None = None
 

@@ -15,7 +15,7 @@ from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.laws.brenner_1961 import Brenner1961
 from restitution.laws.cavitation import ATMOSPHERE
-from restitution.laws.drag import DragLaw, SchillerNaumann1935
+from restitution.laws.drag import STANDARD, DragLaw
 from restitution.laws.film import YangHunt2008
 from restitution.laws.history import DorganLoth2007, HistoryLaw
 from restitution.laws.rebound import ReboundLaw
@@ -40,15 +40,18 @@ class Closures:
       ``lubrication=False`` keeps the resistance of the wall at its value at the edge of the film.
     """
 
-    drag: DragLaw | None = field(default_factory=SchillerNaumann1935)
+    drag: DragLaw | None = field(default_factory=STANDARD)
     wall: ResistanceLaw | None = field(default_factory=Brenner1961)
     """Adds 6 pi mu r v (lambda - 1) to the drag, so that the sum is Brenner's at small Re."""
     added_mass: Literal["wall", "free"] | None = "wall"
     """``wall``: exact C_M(h) of potential flow; ``free``: 1/2 at any gap."""
     history: HistoryLaw | None = field(default_factory=DorganLoth2007)
     """The default is the kernel said to hold at the Re of measured rebounds, up to a few hundred."""
+    drag_factor: float = 1.0
+    history_factor: float = 1.0
+    """By which drag and history force are multiplied: what a fit may leave open of them."""
     wake: OwnWake | None = None
-    """The fluid that an approach leaves moving, met by the rebound; not of the literature, so off by default."""
+    """The fluid that an approach leaves moving, met by the rebound: empirical; off by default."""
     rebound: ReboundLaw | None = None
     measured: tuple[float, ...] | None = None
     """e_eff of bounce 1, 2, ... in place of a law; after the last of them the sphere rests."""
@@ -110,6 +113,7 @@ class Closures:
         bounds = {
             "e_dry": (0.0, 1.0), "contact": (0.0, math.inf),
             "reduced_modulus": (1.0, math.inf), "tension": (1.0, math.inf), "film": (0.0, 10.0),
+            "drag_factor": (0.0, 10.0), "history_factor": (0.0, 10.0),
         }  # fmt: skip
         for name, (low, high) in bounds.items():
             value = getattr(self, name)

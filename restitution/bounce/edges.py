@@ -26,7 +26,8 @@ from restitution.bounce.closures import Closures, Release
 from restitution.bounce.model import Trajectory, bounce
 from restitution.conditions import Conditions
 from restitution.errors import ConventionError, Defect, InputError
-from restitution.laws.drag import excess_weight, terminal_speed
+from restitution.laws.drag import SchillerNaumann1935, excess_weight, terminal_speed
+from restitution.laws.history import DorganLoth2007
 from restitution.laws.rebound import ReboundLaw
 from restitution.stokes import Speed, StokesNumber, film_edge
 
@@ -88,7 +89,7 @@ class Passage:
         height = self.wide * c.sphere.diameter
         falls = math.sqrt(2 * height / c.free_fall) + self.v_wide / c.free_fall
         long = 10 * (falls + height / terminal_speed(c))
-        closures = Closures(measured=(e,), film=self.narrow)
+        closures = Closures(drag=SchillerNaumann1935(), history=DorganLoth2007(), measured=(e,), film=self.narrow)
         return bounce(c, Release(height, self.speed), closures, long, _TOLERANCE)
 
 

@@ -12,7 +12,7 @@ from restitution.bounce import history
 from restitution.bounce.added_mass import added_mass, added_mass_slope
 from restitution.bounce.closures import Closures
 from restitution.bounce.kernel import Forces
-from restitution.bounce.tables import Table, constant, tabulate
+from restitution.bounce.tables import Table, constant, scaled, tabulate
 from restitution.conditions import Conditions
 from restitution.laws.cavitation import film_edge
 from restitution.laws.drag import DragLaw, excess_weight, terminal_speed
@@ -69,20 +69,21 @@ def _force_numbers(conditions: Conditions, closures: Closures, end: float) -> Fo
     stokes = 6 * math.pi * fluid.viscosity * r
     free_fall = math.sqrt(c.gravity * sphere.diameter)
     terms = history.modes(r, nu, slowest=0.01 / end, fastest=1e6 * free_fall / r)
-    share, slope = _memory(closures.history, terms, r, nu)
+    share, slope = _memory(closures.history, r, nu, 0.01 / end, 1e6 * free_fall / r)
     on = closures.history is not None
+    memory = stokes * closures.history_factor if on else 0.0
     keep = slice(None) if on else slice(0)
     return Forces(
         mass=sphere.mass,
-        tail=stokes * terms.tail * history.BASSET if on else 0.0,
+        tail=memory * terms.tail * history.BASSET,
         fluid_mass=fluid.density * math.pi * sphere.diameter**3 / 6,
         weight=excess_weight(c),
         radius=r,
         stokes=stokes,
-        history=stokes if on else 0.0,
+        history=memory,
         reynolds_per_speed=sphere.diameter / nu,
         floor=closures.contact_gap(c) if closures.lubrication else closures.film * sphere.diameter,
-        drag=drag_table(closures.drag),
+        drag=scaled(drag_table(closures.drag), closures.drag_factor),
         wall=wall_table(closures.wall),
         tear=film_edge(fluid.viscosity, 1.0, r, closures.tension) ** 2 if closures.wall is not None else 0.0,
         added_mass=added_mass_table(closures.added_mass),
@@ -95,9 +96,12 @@ def _force_numbers(conditions: Conditions, closures: Closures, end: float) -> Fo
     )
 
 
-def _memory(law: HistoryLaw | None, terms: history.Modes, r: float, nu: float) -> tuple[np.ndarray, np.ndarray]:
+@lru_cache(maxsize=64)
+def _memory(
+    law: HistoryLaw | None, r: float, nu: float, slowest: float, fastest: float
+) -> tuple[np.ndarray, np.ndarray]:
     """G of every term and its slope, on the grid of ln(Re)."""
-    ln_Re = np.arange(*_LN_RE)
+    terms, ln_Re = history.modes(r, nu, slowest, fastest), np.arange(*_LN_RE)
     if not isinstance(law, FiniteReynolds):
         return np.full((len(ln_Re), len(terms.rates)), history.BASSET), np.zeros((len(ln_Re), len(terms.rates)))
     ln_beta = np.log(terms.rates) + np.log(law.crossover(np.exp(ln_Re)) * r**2 / nu)[:, None]

@@ -127,14 +127,9 @@ def _share(f, ln_Re, share):
 @njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _wake(wake, radius, t, h):
     """Velocity of the fluid that the approach has set moving (restitution.bounce.wake)."""
-    at = h * wake.per_gap
-    i = int(at)
-    if h <= 0 or i >= len(wake.speed) - 1:
+    if h <= 0 or wake.speed == 0.0:
         return 0.0
-    x = at - i
-    speed = (1 - x) * wake.speed[i] + x * wake.speed[i + 1]
-    age = t - (1 - x) * wake.time[i] - x * wake.time[i + 1]
-    return speed / (1 + wake.rate * age) * (1 - math.exp(-h / radius))
+    return wake.speed * math.exp(-wake.rate * (t - wake.time)) * (1 - math.exp(-h / radius))
 
 
 @njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)

@@ -188,7 +188,8 @@ class Run:
         self.inside = self.h < self.edge
         self.scale = conditions.sphere.radius / math.sqrt(conditions.gravity * conditions.sphere.diameter)
         self.dt = 1e-4 * self.scale
-        self.wake, self.steady = NONE, release.developed
+        self.wake, self.steady = NONE, release.developed and release.drive is None
+        self.driven = 0.0 if release.drive is None else release.drive.way
         self.impacts: list[Impact] = []
         self.rows: list[NDArray] = []
         self.lost: list[NDArray] = []
@@ -254,20 +255,19 @@ class Run:
             self.t = self.end
             return
         if self.closures.wake is not None:
-            self.wake = self._left_behind(self.closures.wake)
+            self.wake = self._left_behind(self.closures.wake, v_in)
         self.v = self._shared(v_out, -v_in, self.touch)
         self.so_far[2] += M / 2 * v_out**2 + tail / 2 * v_in**2 - whole / 2 * self.v**2
 
-    def _left_behind(self, law: OwnWake) -> Wake:
-        """The wake of the approach that has just ended: of the steps since the sphere last began to fall."""
-        t, h, v = np.concatenate(self.rows).T
-        rising = np.flatnonzero(v >= 0)
-        first = rising[-1] + 1 if len(rising) else 0
-        t, h, v = t[first:], h[first:], v[first:]
-        fluid, r = self.conditions.fluid, self.forces.radius
-        drag = self.forces.stokes * look(self.forces.drag, np.abs(v) * self.forces.reynolds_per_speed) * np.abs(v)
-        steady = bool(self.steady and first == 0)
-        return left_behind(law, t, h, v, steady, drag, fluid.viscosity / fluid.density, fluid.density, r)
+    def _left_behind(self, law: OwnWake, speed: float) -> Wake:
+        """The wake of the approach that has just ended: of the way since the sphere last began to fall."""
+        h, v = np.concatenate(self.rows)[:, 1:].T
+        turned = np.flatnonzero(v >= 0)
+        way = float(h[turned[-1]]) if len(turned) else float(h[0] + self.driven)
+        way = math.inf if self.steady and not len(turned) else way
+        fluid = self.conditions.fluid
+        nu = fluid.viscosity / fluid.density
+        return left_behind(law, self.t, speed, way, self.conditions.sphere.diameter, nu)
 
     def _shared(self, v: float, before: float, gap: float) -> float:
         """The velocity after a jump to ``v``, once the fastest history terms, at ``before``, have followed."""

@@ -40,6 +40,11 @@ def constant(y: float) -> Table:
     return Table(0.0, 1.0, np.full(2, y), np.zeros(2))
 
 
+def scaled(table: Table, factor: float) -> Table:
+    """``factor`` times a table."""
+    return table if factor == 1 else table._replace(y=factor * table.y, slope=factor * table.slope)
+
+
 def look(table: Table, x: NDArray) -> NDArray:
     """The interpolant at ``x``; the compiled kernel has the same in one place."""
     at = np.clip((np.log(x) - table.start) * table.per_step, 0, len(table.y) - 1)

@@ -63,8 +63,10 @@ def run(args: argparse.Namespace) -> None:
     if args.trajectory:
         fit_trajectory.run(args)
         return
-    if args.wake != "auto":
-        raise InputError(Defect("belongs to --trajectory", field="--wake", value=args.wake))
+    given = {"--wake": args.wake != "auto", "--film": args.film, "--release": args.release is not None}
+    defects = [Defect("belongs to --trajectory", field=option) for option, is_given in given.items() if is_given]
+    if defects:
+        raise InputError(*defects)
     observations = read(args.data, fit_options.reading_of(args))
     law = args.law or "eq4_exponential"
     stokes = fit_options.convention_of_formula(args.law_stokes, [law], observations.convention)

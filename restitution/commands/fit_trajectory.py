@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
     from restitution.calibration.result.fit_result import FitResult
     from restitution.calibration.result.ranking import Ranking
     from restitution.calibration.trajectories.fit import Measured, TrajectoryFit
+    from restitution.calibration.trajectories.recordings import Recording
+    from restitution.doubts import Doubt
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -31,6 +35,18 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default="auto",
         help="with --trajectory: whether the sphere meets the wake of its approach (auto: what the frames prefer)",
     )
+    parser.add_argument(
+        "--film",
+        action="store_true",
+        help="with --trajectory: in place of the e of each bounce one resolved film a track, its h_min, tension "
+        "and e_dry, with their correlations; no law",
+    )
+    parser.add_argument(
+        "--release",
+        metavar="LENGTH",
+        help="with --trajectory: gap from which the sphere was let go at rest, as in 25.3mm (known to 1 %% and "
+        "0.01 d; default: as conditions or settings state it, else what the frames tell)",
+    )
 
 
 def run(args: argparse.Namespace) -> None:
@@ -42,6 +58,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
+    from restitution.foreign.settings import Settings
     from restitution.laws.source_abstract_eq4 import READINGS
     from restitution.stokes import H_FILM
 
@@ -49,11 +66,16 @@ def run(args: argparse.Namespace) -> None:
         rule = "a whole trajectory gives the speed of the motion outside the film: far"
         raise InputError(Defect(rule, field="--speed", value=args.speed))
     how = fit_options.reading_of(args)
+    if args.release is not None:
+        how = replace(how, track=Settings(release=args.release).over(how.track))
     wakes = {"auto": (False, True), "on": (True,), "off": (False,)}[args.wake]
     plans = {
         law: fit_options.plan_of(args, law, args.law_stokes or how.stokes or "st", strict=args.law is not None)
         for law in ((args.law,) if args.law else READINGS)
     }
+    if args.film:
+        _fit_films(args, read_recordings(args.data, how), wakes)
+        return
     edge = H_FILM if how.edge is None else how.edge
     measured = Measured.of(read_recordings(args.data, how), wakes, edge, now_and_then())
     show(f"within {edge:g} d of the wall e_eff stands for every viscous force; its law's constants belong to that")
@@ -94,6 +116,46 @@ def run(args: argparse.Namespace) -> None:
     _show_distances(result)
     for name in written:
         show(str(Path(args.report) / name))
+
+
+def _fit_films(args: argparse.Namespace, records: Sequence[Recording], wakes: Sequence[bool]) -> None:
+    """One film a record, and e_dry by all of them."""
+    from restitution.calibration.trajectories.films import DRY_IMPACTS, FilmFit, combined
+    from restitution.calibration.trajectories.flights import E_DRY, H_MIN, TENSION
+    from restitution.doubts import refuse
+    from restitution.errors import Defect, InputError
+
+    for name, value in (("--law", args.law), ("--out", args.out), ("--report", args.report)):
+        if value is not None:
+            raise InputError(Defect("does not go with --film, which fits no law", field=name, value=value))
+    doubts: list[Doubt] = []
+    pairs = (H_MIN, E_DRY), (TENSION, E_DRY), (H_MIN, TENSION)
+    for wake in wakes:
+        fits = [FilmFit.of(r, wake) for r in records]
+        rows = []
+        for f in fits:
+            (h, by_h), (tension, by_tension), t = f.factor(H_MIN), f.factor(TENSION), f.trajectory
+            rows.append(
+                (
+                    f.name, f"{1e9 * h:.0f} */ {by_h:.1f}", f"{1e-3 * tension:.0f} */ {by_tension:.1f}",
+                    "{:.3f} +- {:.3f}".format(*f.e_dry), *(f"{f.correlation(*pair):+.2f}" for pair in pairs),
+                    f"{t.rms_d:.4f}", f"{t.log_evidence:.1f}",
+                )
+            )  # fmt: skip
+            doubts += f.doubts
+        show(f"one resolved film a record, {'with' if wake else 'without'} the wake of the approach:")
+        heads = ("record", "h_min nm", "tension kPa", "e_dry", "r(h_min, e_dry)", "r(tension, e_dry)",
+                 "r(h_min, tension)", "rms/d", "ln evidence")  # fmt: skip
+        show_rows(heads, rows, right=heads[1:])
+        if len(fits) > 1:
+            c = combined(fits)
+            show(
+                f"together e_dry = {c.mean:.3f} +- {c.sigma:.3f} (chi^2 {c.chi_square:.1f} of {c.records} records)"
+                f"; dry impacts of steel and glass: {DRY_IMPACTS[0]:g} +- {DRY_IMPACTS[1]:g}"
+            )
+    show_doubts(doubts)
+    if args.strict:
+        refuse(doubts)
 
 
 def _show_records(measured: Measured) -> None:

@@ -248,10 +248,10 @@ def _terminal(conditions: Conditions) -> float:
     """The terminal speed; of a sphere lighter than the fluid that of its rise, inf where it neither falls
     nor rises.
     """
-    from restitution.laws.drag import SchillerNaumann1935, steady
+    from restitution.laws.drag import STANDARD, steady
 
     c = conditions
     weight = abs(c.sphere.density - c.fluid.density) * math.pi * c.sphere.diameter**3 / 6 * c.gravity
     if weight == 0:
         return math.inf
-    return steady(SchillerNaumann1935(), weight, c.sphere.diameter, c.fluid.density, c.fluid.viscosity)
+    return steady(STANDARD(), weight, c.sphere.diameter, c.fluid.density, c.fluid.viscosity)

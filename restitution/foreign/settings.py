@@ -31,6 +31,7 @@ class Settings(Record):
     ``unit``: "mm", "px", "0.3 mm", "d". ``frames_per_second`` and ``pixel`` say what a frame and a pixel are.
     ``direction``: "up" where positions and velocities grow away from the wall. ``wall``: where the wall is, in the
     unit of the positions, or "rest": where the sphere comes to rest. ``point``: whose position it is.
+    ``release``: the gap from which the sphere was let go at rest, as "25.3 mm", for a fit to whole trajectories.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, coerce_numbers_to_str=False)
@@ -46,6 +47,7 @@ class Settings(Record):
     direction: Literal["up", "down"] | None = None
     wall: Annotated[float, Field(allow_inf_nan=False, strict=True)] | Literal["rest"] | None = None
     point: Literal["lowest", "centre"] | None = None
+    release: Text | None = None
     decimal: Decimal | None = None
 
     def over(self, other: Settings) -> Settings:
@@ -100,6 +102,10 @@ class Units:
         """A unit of length in m."""
         return self._value(unit, "--unit", LENGTH, "a length, such as mm, px, 0.3mm or d")
 
+    def release(self, height: str) -> float:
+        """A height of release in m."""
+        return self._value(height, "--release", LENGTH, "a length, such as 25.3mm, 2.66 d or 200 px")
+
     def time(self, unit: str) -> float:
         """A unit of time in s."""
         return self._value(unit, "--time-unit", TIME, "a time, such as ms, frame, 0.5ms or sqrt(d/g)")
@@ -153,6 +159,7 @@ TEMPLATE = """\
 
 # direction = "down"         # positions grow towards the wall, as rows of an image do ("up": away from it)
 # wall = 812                 # where the wall is, in the unit of positions; "rest": where the sphere comes to rest
+# release = "25.3 mm"        # gap from which it was let go at rest, for fit --trajectory
 # point = "centre"           # positions are those of the centre, d/2 above the lowest point ("lowest")
 # decimal = ","              # the decimal sign, where the numbers leave it open
 """

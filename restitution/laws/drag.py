@@ -1,7 +1,7 @@
 """Drag on an unbounded sphere in steady motion: C_D(Re), Re = v d/nu, the force being C_D rho_f v^2/2 pi d^2/4.
 
 All tend to Stokes' 24/Re at small Re. What a wall adds is in the resistance laws, what acceleration adds in the
-history laws.
+history laws. Where nobody chooses one it is :data:`STANDARD`.
 """
 
 from __future__ import annotations
@@ -91,13 +91,15 @@ class BrownLawler2003(DragLaw):
 
 @dataclass(frozen=True)
 class CliftGraceWeber1978(DragLaw):
-    """The recommended standard drag curve, piecewise in w = log10(Re), for Re up to 1.2e4:
+    """The recommended standard drag curve, piecewise in w = log10(Re), up to the drag crisis:
 
     24/Re + 3/16                               Re < 0.01
     24/Re (1 + 0.1315 Re^(0.82 - 0.05 w))      Re < 20
     24/Re (1 + 0.1935 Re^0.6305)               Re < 260
     10^(1.6435 - 1.1242 w + 0.1558 w^2)        Re < 1500
-    10^(-2.4571 + 2.5558 w - 0.9295 w^2 + 0.1049 w^3)
+    10^(-2.4571 + 2.5558 w - 0.9295 w^2 + 0.1049 w^3)    Re < 1.2e4
+    10^(-1.9181 + 0.6370 w - 0.0636 w^2)       Re < 4.4e4
+    10^(-4.3390 + 1.5809 w - 0.1546 w^2)
 
     The pieces meet within 1 %, not exactly.
     """
@@ -109,10 +111,12 @@ class CliftGraceWeber1978(DragLaw):
         "(24/Re*(1 + 0.1315*Re**(0.82 - 0.05*log(Re, 10))), Re < 20),"
         "(24/Re*(1 + 0.1935*Re**0.6305), Re < 260),"
         "(10**(1.6435 - 1.1242*log(Re, 10) + 0.1558*log(Re, 10)**2), Re < 1500),"
-        "(10**(-2.4571 + 2.5558*log(Re, 10) - 0.9295*log(Re, 10)**2 + 0.1049*log(Re, 10)**3), True))"
+        "(10**(-2.4571 + 2.5558*log(Re, 10) - 0.9295*log(Re, 10)**2 + 0.1049*log(Re, 10)**3), Re < 12000),"
+        "(10**(-1.9181 + 0.6370*log(Re, 10) - 0.0636*log(Re, 10)**2), Re < 44000),"
+        "(10**(-4.3390 + 1.5809*log(Re, 10) - 0.1546*log(Re, 10)**2), True))"
     )
-    validity: ClassVar = (0.0, 1.2e4)
-    validity_source: ClassVar = "the pieces taken over; the curve goes on to 1e6"
+    validity: ClassVar = (0.0, 3.38e5)
+    validity_source: ClassVar = "up to the drag crisis; the pieces beyond it are left out"
     reference: ClassVar = "Clift, Grace & Weber, Bubbles, Drops, and Particles, Academic Press (1978), table 5.2"
     status: ClassVar = Status.IN_CODE
     evidence: ClassVar = "read in the public package 'fluids', which cites it; the book was not opened"
@@ -120,7 +124,8 @@ class CliftGraceWeber1978(DragLaw):
         CheckValue({"Re": Re}, C_D, 1e-9 * C_D, _FLUIDS)
         for Re, C_D in (
             (0.005, 4800.1875), (1.0, 27.156), (10.0, 4.258390576302238), (200.0, 0.7756342422322543),
-            (1000.0, 0.4710857854203698), (5000.0, 0.3872751525869864),
+            (1000.0, 0.4710857854203698), (5000.0, 0.3872751525869864), (2e4, 0.4417012958058001),
+            (2e5, 0.49773277623027434),
         )
     )  # fmt: skip
 
@@ -143,6 +148,11 @@ class Abraham1970(DragLaw):
         CheckValue({"Re": 1.5}, 20.58, 0.6, "ten Cate et al. 2002, Table I: the weight at the stated 0.038 m/s"),
         CheckValue({"Re": 11.6}, 3.90, 0.12, "ten Cate et al. 2002, Table I: the weight at the stated 0.091 m/s"),
     )
+
+
+STANDARD = CliftGraceWeber1978
+"""The drag where nobody chooses one: nearest to what Roos & Willmarth measured, at Re 5 to 1000 within their
+scatter (:mod:`restitution.bounce.unbounded` has the comparison)."""
 
 
 def steady(law: DragLaw, weight: float, diameter: float, density: float, viscosity: float) -> float:
@@ -177,6 +187,4 @@ def excess_weight(conditions: Conditions) -> float:
 def terminal_speed(conditions: Conditions, drag: DragLaw | None = None) -> float:
     """The steady speed in m/s far from walls at which ``drag`` balances gravity less buoyancy."""
     c = conditions
-    return steady(
-        drag or SchillerNaumann1935(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity
-    )
+    return steady(drag or STANDARD(), excess_weight(c), c.sphere.diameter, c.fluid.density, c.fluid.viscosity)

@@ -21,7 +21,7 @@ contact ``soft_*``           refused: a contact here takes no time
 not used                     ``[numerics]``, ``film.tangential``, ``contact.added_mass``, ``snapshot_interval``
 ===========================  ==========================================================================
 
-Drag is Schiller & Naumann's and history Dorgan & Loth's, the defaults of :class:`restitution.bounce.Closures`.
+Drag is the standard curve and history Dorgan & Loth's, the defaults of :class:`restitution.bounce.Closures`.
 The fluid has no end but the wall.
 """
 

@@ -7,7 +7,7 @@ With v = v_t (1 - exp(-s)), v_t the terminal speed, its integrand stays finite u
 
     y(s) = (m + m_f/2) int_0^s v v_t exp(-s')/(w - D(v)) ds'.
 
-The drag is Schiller & Naumann's (:mod:`restitution.laws.drag`). History force and the wall's retardation are left
+The drag is the standard curve (:mod:`restitution.laws.drag`). History force and the wall's retardation are left
 out: the speed is that far from the wall; it serves to choose an experiment, not to evaluate one.
 """
 
@@ -19,7 +19,7 @@ import numpy as np
 from scipy.integrate import cumulative_simpson
 
 from restitution.conditions import Conditions
-from restitution.laws.drag import SchillerNaumann1935, steady
+from restitution.laws.drag import STANDARD, steady
 
 _NEAREST = 20.0
 """s of the greatest speed that is told from v_t: 1 - exp(-20) of it."""
@@ -28,7 +28,7 @@ _POINTS = 4001
 
 def fall_speed(conditions: Conditions, height: float) -> float:
     """Speed in m/s after a fall of ``height`` in m; 0 for a sphere that does not sink."""
-    fluid, sphere, drag = conditions.fluid, conditions.sphere, SchillerNaumann1935()
+    fluid, sphere, drag = conditions.fluid, conditions.sphere, STANDARD()
     displaced = fluid.density * math.pi * sphere.diameter**3 / 6
     weight = (sphere.mass - displaced) * conditions.gravity
     if weight <= 0:

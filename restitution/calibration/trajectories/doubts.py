@@ -6,17 +6,21 @@ change. Where the forces of the model are not those of the flight, these signs s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from restitution.calibration.estimation.fitting import Fit
+from restitution.calibration.trajectories.flights import DRAG, DRAG_SIGMA, HISTORY, HISTORY_SIGMA
 from restitution.doubts import Doubt
 
 if TYPE_CHECKING:
     from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory
 
-SCALES = 3.0
-"""Standard deviations of its prior from which on a scale is a doubt."""
+KNOWN = 3.0
+"""Conflict with what was known from which on a scale, a level, a factor of drag or history are a doubt."""
+EXCLUDED = 4.0
+"""Errors from 1 at which the frames exclude drag or history of the model."""
 NOISES = 5.0
 """Errors of reading from which on the correlated noise is one."""
 
@@ -26,13 +30,36 @@ def of_records(trajectories: Sequence[WholeTrajectory]) -> Iterator[Doubt]:
     for t in trajectories:
         r = t.recording
         yield from r.doubts
+        if not t.settled:
+            yield Doubt(
+                "model",
+                "start, forces and restitutions do not come to rest: the model is far from these frames, or they "
+                "leave it open",
+                r.name,
+            )
         scale, _ = t.unknowns["scale"]
-        if abs(scale - 1) > SCALES * r.scale:
+        if conflict(t, "scale", r.scale) > KNOWN:
             yield Doubt(
                 "scale",
                 f"the gaps meet the model only scaled by {scale:.3f}: the scale of the record (--unit, "
-                "--pixel) or the "
-                "forces of the model are off, and e with them",
+                "--pixel) or the forces of the model are off, and e with them",
+                r.name,
+            )
+        for name, known in ((DRAG, DRAG_SIGMA), (HISTORY, HISTORY_SIGMA)):
+            value, sigma = t.unknowns[name]
+            if conflict(t, name, known) > KNOWN or abs(value - 1) > EXCLUDED * sigma:
+                yield Doubt(
+                    "forces",
+                    f"the frames want {value:.2f} +- {sigma:.2f} times the {name.removesuffix('_factor')} of the "
+                    f"model, known to {known:g}: fluid, sphere, scale or clock are not as stated, or the flight "
+                    "has other forces",
+                    r.name,
+                )
+        if conflict(t, "zero_m", r.level, 0.0) > KNOWN:
+            yield Doubt(
+                "level",
+                f"the wall lies {1e3 * t.unknowns['zero_m'][0]:.3g} mm from the zero of the gaps, known to "
+                f"{1e3 * r.level:.2g} mm: --wall, --point",
                 r.name,
             )
         if t.sigma_u[0] > NOISES * r.sigma:
@@ -44,6 +71,12 @@ def of_records(trajectories: Sequence[WholeTrajectory]) -> Iterator[Doubt]:
                 "without history force, 'restitution impacts' needs no model)",
                 r.name,
             )
+
+
+def conflict(t: WholeTrajectory, name: str, known: float, mean: float = 1.0) -> float:
+    """|posterior mean - prior mean| over what it is expected to be, sqrt(prior variance - posterior variance)."""
+    value, sigma = t.unknowns[name]
+    return abs(value - mean) / math.sqrt(max(known**2 - sigma**2, 1e-6 * known**2))
 
 
 def of_parameters(fit: Fit, slopes: Fit | str) -> Iterator[Doubt]:

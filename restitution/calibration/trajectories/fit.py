@@ -8,10 +8,11 @@ from them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
-from restitution.bounce import Closures, OwnWake
+from restitution.bounce import Closures
 from restitution.calibration.estimation.fitting import Fit, estimate
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.estimation.posterior import Posterior
@@ -62,17 +63,37 @@ class Measured:
         """How many rebounds leave the film, of all records."""
         return sum(int(t.outside().sum()) for t in self.trajectories[self.preferred])
 
-    def preference(self) -> float:
-        """Ln of the evidence with wake over that without, all records; 0 where one of them was not asked for."""
+    @property
+    def gains(self) -> dict[str, float]:
+        """Ln of the evidence with wake over that without, by record; none where one of them was not asked for."""
         if len(self.trajectories) < 2:
-            return 0.0
-        with_wake, without = (sum(t.log_evidence for t in self.trajectories[w]) for w in (True, False))
-        return with_wake - without
+            return {}
+        pairs = zip(self.trajectories[True], self.trajectories[False], strict=True)
+        return {a.recording.name: a.log_evidence - b.log_evidence for a, b in pairs}
+
+    def preference(self, left_out: Collection[str] = ()) -> float:
+        """The sum of :attr:`gains` over all records but those ``left_out``; 0 where there are none."""
+        return sum(gain for name, gain in self.gains.items() if name not in left_out)
+
+    @property
+    def borne_out(self) -> float:
+        """The least of :meth:`preference` with one record left out, or of all where there is but one."""
+        if len(self.gains) < 2:
+            return self.preference()
+        return min(self.preference((name,)) for name in self.gains)
 
     @property
     def preferred(self) -> bool:
-        """Whether the frames prefer the wake; of what was asked for."""
-        return self.preference() > 0 if len(self.trajectories) == 2 else next(iter(self.trajectories))
+        """Whether the frames prefer the wake, whichever record is left out; of what was asked for."""
+        return self.borne_out > 0 if len(self.trajectories) == 2 else next(iter(self.trajectories))
+
+    def without(self, left_out: Collection[str]) -> Measured:
+        """The same trajectories, those of some records left out."""
+        records = tuple(r for r in self.records if r.name not in left_out)
+        kept = {
+            w: [t for t in found if t.recording.name not in left_out] for w, found in self.trajectories.items()
+        }
+        return Measured(records, kept, self.edge)
 
 
 def observations(trajectories: Sequence[WholeTrajectory], how: Reading) -> Observations:
@@ -110,13 +131,15 @@ def law_fit(plan: Plan, o: Observations) -> Fit:
     return estimate(plan, o)
 
 
-def closures_of(fit: Fit, wake: bool, edge: float = H_FILM, record: str | None = None) -> Closures:
-    """The bouncing sphere with the fitted law; of separate parameters those of the ``record``."""
+def closures_of(
+    fit: Fit, forces: Mapping[str, Any], edge: float = H_FILM, record: str | None = None
+) -> Closures:
+    """The bouncing sphere with the fitted law, under the ``forces`` of a record; of separate parameters its own."""
     values = dict(fit.likelihood.fixed) | values_of(fit, record)
     own = {p.name: values[p.name] for p in fit.likelihood.model.parameters}
     e_dry = values["e_dry"] if isinstance(values.get("e_dry"), float) else None
     law = FittedLaw(fit.likelihood.model, own, edge)
-    return Closures(rebound=law, wake=OwnWake() if wake else None, e_dry=e_dry)
+    return Closures(rebound=law, e_dry=e_dry, **forces)
 
 
 def values_of(fit: Fit, record: str | None) -> dict[str, float]:
@@ -168,13 +191,17 @@ class TrajectoryFit:
             return f"model {used} the wake of the approach, as asked for"
         better = "with" if gain > 0 else "without"
         clear = "" if abs(gain) > CLEAR else " (not clearly)"
-        return (
+        words = (
             f"the frames prefer the model {better} the wake of the approach{clear}: ln of the evidence differs by "
-            f"{abs(gain):.1f}; the fit is {used} it"
+            f"{abs(gain):.1f}, the strength of the wake an unknown"
         )
+        if len(self.measured.gains) > 1:
+            least = self.measured.borne_out
+            words += f"; with it less without it, at least {least:+.1f} whichever record is left out"
+        return f"{words}; the fit is {used} it"
 
     def _record(self, t: WholeTrajectory) -> TrajectoryRecord:
-        path, rms, apex = distance_d(t, closures_of(self.fit, self.wake, self.measured.edge, t.recording.name))
+        path, rms, apex = distance_d(t, closures_of(self.fit, t.forces, self.measured.edge, t.recording.name))
         other = next(
             (x for x in self.measured.trajectories.get(not self.wake, []) if x.recording is t.recording), None
         )

@@ -1,18 +1,19 @@
 r"""The likelihood of one recorded trajectory under the model of a bouncing sphere, written as the statistics are.
 
-Frame i of a record shows the gap y_i at the time t_i. With the gap h(t'; a, e) of the model, a what is open at its
-start (:mod:`.recordings`) and e = (e_1, ..., e_N) the effective restitution of each bounce,
+Frame i of a record shows the gap y_i at the time t_i. With the gap h(t'; x) of the model, x its unknowns
+(:mod:`.flights`): what is open at the start (:mod:`.recordings`), the strength of the wake where there is one, and
+the effective restitution of each bounce, or the film,
 
-    y_i = b + s h(t'_i; a, e) + u(t_i) + w_i,        t' = T_1 + (t - t_1)(1 + r)   or   (t - t_0)(1 + r):
+    y_i = b + s h(t'_i; x) + u(t_i) + w_i,        t' = T_1 + (t - t_1)(1 + r)   or   (t - t_0)(1 + r):
 
 b the zero of the gap, s the scale of the digitisation, t_1 the recorded time of the first contact (of a release
 from rest at a known height, t_0 of the release), r a relative error of the clock where one is stated. w is the
 error of a reading, u an Ornstein-Uhlenbeck process: what the model lacks, and the drift of the camera
 (:mod:`.correlated_noise`). Frames at rest enter as their mean, b + w/sqrt(n).
 
-The unknowns eta = (b, s, t_1, r, a, e) in units of their priors (:mod:`.unknowns`) have normal priors N(0, 1);
-that of e is wide. They are integrated over, the model being linear about the most probable eta (Gauss-Newton), as
-it is in b and s:
+The unknowns eta = (b, s, t_1, r, x) in units of their priors (:mod:`.unknowns`) have normal priors N(0, 1);
+that of each e is wide. They are integrated over, the model being linear about the most probable eta
+(Gauss-Newton), as it is in b and s:
 
     ln L(sigma_u, tau) = -1/2 [z^T K^-1 z - g^T M^-1 g + ln|K| + ln|M| + n ln(2 pi)],
     z = y - f(eta*) + X eta*,  X = df/deta,  M = 1 + X^T K^-1 X,  g = X^T K^-1 z,  <eta> = M^-1 g.
@@ -34,7 +35,7 @@ from scipy.special import logsumexp
 from restitution.calibration.trajectories.correlated_noise import gram_matrices
 from restitution.calibration.trajectories.flight_map import FlightMap, Flights
 from restitution.calibration.trajectories.recordings import Recording
-from restitution.calibration.trajectories.unknowns import Unknowns, priors
+from restitution.calibration.trajectories.unknowns import Open, Unknowns, priors
 
 SIGMA_U = (0.1, 0.3)
 """Range of the prior of sigma_u: from this part of the reading error to this part of a diameter."""
@@ -111,27 +112,28 @@ class Marginal:
 
 @dataclass(frozen=True)
 class RecordLikelihood:
-    """One record; ``flights`` maps start and restitutions to a trajectory, ``eta`` is where the search begins."""
+    """One record; ``flights`` maps the unknowns ``open`` to a trajectory, ``eta`` is where the search begins."""
 
     recording: Recording
+    open: tuple[Open, ...]
     flights: FlightMap
     noise: Noise
     eta: NDArray
 
     @property
     def bounces(self) -> int:
-        """N."""
-        return len(self.flights.centre) - 1
+        """N, one less than the flights that are told."""
+        return self.flights.flights - 1
 
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Of the unknowns, with their units."""
-        return tuple(priors(self.recording, self.bounces))
+        return tuple(priors(self.recording, self.open))
 
     @cached_property
     def prior(self) -> tuple[NDArray, NDArray]:
         """Mean and standard deviation of each unknown."""
-        mean, sigma = np.array(list(priors(self.recording, self.bounces).values())).T
+        mean, sigma = np.array(list(priors(self.recording, self.open).values())).T
         return mean, sigma
 
     def named(self, array: NDArray) -> Unknowns:

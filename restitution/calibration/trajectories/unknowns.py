@@ -1,20 +1,31 @@
-"""The unknowns of a recorded trajectory: one vector (b, s, t, r, a, e_1, ..., e_N), read by name.
+"""The unknowns of a recorded trajectory: one vector (b, s, t, r, x_1, ..., x_P), read by name.
 
 b is the zero of the gap, s the scale of the digitisation, t the recorded time of the first contact or of the
-release, r the relative error of the clock (only where one is stated), a what is open at the start, e_n the
-effective restitution of bounce n. (a, e) alone make the flight, the others the camera.
+release, r the relative error of the clock (only where one is stated): they make the camera. The x alone make the
+flight; which they are, a model of the flight says (:mod:`.flights`): what is open at the start, then, say, the
+effective restitution of each bounce.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from numpy.typing import NDArray
 
 from restitution.calibration.trajectories.recordings import Recording
 
-RESTITUTION = (0.5, 1.0)
-"""Mean and standard deviation of the prior of each e: told apart from none by no record."""
+
+@dataclass(frozen=True)
+class Open:
+    """An unknown of the flight: name with its unit, normal prior, range of the model, step of a first map."""
+
+    name: str
+    mean: float
+    sigma: float
+    low: float
+    high: float
+    step: float
 
 
 @dataclass(frozen=True)
@@ -54,35 +65,24 @@ class Unknowns:
 
     @property
     def flight(self) -> NDArray:
-        """(a, e_1, ..., e_N)."""
+        """(x_1, ..., x_P)."""
         return self.array[..., self.flight_places]
 
     @property
     def flight_places(self) -> slice:
-        """Where (a, e_1, ..., e_N) stand."""
+        """Where (x_1, ..., x_P) stand."""
         return slice(4 if self.has_rate else 3, None)
 
     @property
     def start(self) -> NDArray:
-        """a, what is open at the start, in m/s or m."""
+        """x_1, what is open at the start, in m/s or m."""
         return self.flight[..., 0]
 
-    @property
-    def e(self) -> NDArray:
-        """The restitution of each bounce."""
-        return self.flight[..., 1:]
 
-
-def priors(r: Recording, bounces: int) -> dict[str, tuple[float, float]]:
+def priors(r: Recording, flight: Sequence[Open]) -> dict[str, tuple[float, float]]:
     """Mean and standard deviation of each unknown before the frames are seen, in order, by name with its unit."""
     clock = "contact_time_s" if r.clock_of == "contact" else "release_time_s"
     known = {"zero_m": (0.0, r.level), "scale": (1.0, r.scale), clock: (r.clock.mean, r.clock.sigma)}
     if r.clock_rate:
         known["clock_rate"] = (0.0, r.clock_rate)
-    known[r.start.name] = (r.start.prior.mean, r.start.prior.sigma)
-    return known | {restitution_name(n): RESTITUTION for n in range(1, bounces + 1)}
-
-
-def restitution_name(n: int) -> str:
-    """Of the restitution of bounce ``n``, counted from 1."""
-    return f"e_{n}"
+    return known | {x.name: (x.mean, x.sigma) for x in flight}

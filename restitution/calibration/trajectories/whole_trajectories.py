@@ -17,9 +17,8 @@ they differ by from a direct integration stands in the result.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,10 +27,9 @@ from numpy.typing import NDArray
 from restitution.bounce import Closures, Trajectory
 from restitution.bounce.agreement import agreement
 from restitution.calibration.trajectories.flight_map import expand_about
-from restitution.calibration.trajectories.flights import Flights, fall_speed, flight
+from restitution.calibration.trajectories.flights import Bounces, Films, flight, forces_of, restitution_name
 from restitution.calibration.trajectories.likelihood import Marginal, Noise, RecordLikelihood
 from restitution.calibration.trajectories.recordings import Recording
-from restitution.calibration.trajectories.unknowns import restitution_name
 from restitution.doubts import refuse
 from restitution.errors import Defect, InputError
 from restitution.impacts.find import find_impacts
@@ -41,10 +39,6 @@ _ROUNDS = 10
 """Maps about better and better centres before the estimate is given up."""
 _FEW = 9
 """Unknowns up to which every map has the terms of their pairs; of more, those about a known centre alone."""
-_E_STEP = 0.02
-"""Steps of the first map in each restitution."""
-_START_STEP = 0.02
-"""Greatest step of it in what is open at the start, relative."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +65,8 @@ class WholeTrajectory:
     path: Trajectory
     map_error: float
     rms_d: float
+    settled: bool = True
+    """Whether the maps came to stand still about the estimate."""
 
     @property
     def sigma(self) -> NDArray:
@@ -84,8 +80,14 @@ class WholeTrajectory:
 
     @property
     def restitutions(self) -> list[tuple[float, float]]:
-        """Mean and standard deviation of the e of each bounce."""
-        return [self.unknowns[restitution_name(n)] for n in range(1, self.bounces + 1)]
+        """Mean and standard deviation of the e of each bounce, where they are unknowns of their own."""
+        names = (restitution_name(n) for n in range(1, self.bounces + 1))
+        return [self.unknowns[name] for name in names if name in self.unknowns]
+
+    @property
+    def forces(self) -> dict[str, Any]:
+        """Drag, history and wake as they are estimated, for :class:`restitution.bounce.Closures`."""
+        return forces_of({name: mean for name, (mean, _) in self.unknowns.items()})
 
     @property
     def bounces(self) -> int:
@@ -93,7 +95,10 @@ class WholeTrajectory:
         return self.likelihood.bounces
 
     def impact_moments(self) -> tuple[NDArray, NDArray, NDArray]:
-        """Impact speeds in m/s and restitutions, (bounces,) each, and their covariance, (2 bounces, 2 bounces)."""
+        """Impact speeds in m/s and restitutions, (bounces,) each, and their covariance, (2 bounces, 2 bounces).
+
+        Of a model in which the restitution of each bounce is unknown.
+        """
         n, steps = self.bounces, self.likelihood.flights.steps
         here = self.likelihood.named(self.mean)
         x, at = here.flight, here.flight_places
@@ -103,9 +108,9 @@ class WholeTrajectory:
             more[j], less[j] = more[j] + step, less[j] - step
             speeds = [self.likelihood.flights.expand(v).impact_speed[:n] for v in (more, less)]
             J[:n, j] = (speeds[0] - speeds[1]) / (2 * step)
-        J[n:, 1:] = np.eye(n)
+        J[n:, -n:] = np.eye(n)
         speeds = self.likelihood.flights.expand(x).impact_speed[:n]
-        return speeds, here.e, J @ self.covariance[at, at] @ J.T
+        return speeds, x[-n:], J @ self.covariance[at, at] @ J.T
 
     def rows(self, stokes: str = "st") -> list[dict]:
         """Its impacts in the schema of the impact table; without a rebound as :mod:`restitution.impacts` has it.
@@ -166,33 +171,40 @@ def whole_trajectories(
 
 
 def whole_trajectory(r: Recording, wake: bool, edge: float = H_FILM) -> WholeTrajectory:
-    """One record under the model, the film a black box within ``edge`` diameters."""
-    integrate = Flights(r, wake, edge)
-    centre = _first_guess(r, integrate)
-    steps = np.full(len(centre), _E_STEP)
-    steps[0] = min(r.start.prior.sigma, _START_STEP * r.start.prior.mean)
+    """One record, the restitution of each bounce unknown; the film is a black box within ``edge`` diameters."""
+    return settle(Bounces(r, wake, edge))
+
+
+def settle(model: Bounces | Films) -> WholeTrajectory:
+    """What a record says of the unknowns of a model of its flight."""
+    r = model.recording
+    centre, steps = model.guess(), np.array([x.step for x in model.open])
     noise, eta, narrow = Noise.typical(r), None, False
     for _ in range(_ROUNDS):
-        centre[1:] = np.clip(centre[1:], steps[1:], 1 - steps[1:])
-        before = {"height": 0.0, "speed": -centre[0], "impact": -fall_speed(r)}[r.start.kind]
+        low, high = np.array([(x.low, x.high) for x in model.open]).T
+        low, high = low + steps, high - steps
+        centre = np.clip(centre, low, high)
         pairs = narrow or len(centre) <= _FEW
-        flights = expand_about(integrate, centre, steps, len(centre), before, pairs)
-        if flights.flights < len(centre):  # a last bounce so low that the model has none, or not in all of the map
+        flights = expand_about(model, centre, steps, model.bounces + 1, model.before(centre[0]), pairs)
+        if flights.flights < model.bounces + 1:
+            # A last bounce so low that the model has none, or not in all of the map.
             if flights.flights < 2:
                 raise InputError(Defect("the model does not bounce where the record does", file=r.name))
-            centre, steps, eta = centre[: flights.flights], steps[: flights.flights], None
+            model = model.fewer(flights.flights - 1)
+            kept = len(model.open)
+            centre, steps, eta = centre[:kept], steps[:kept], None
             continue
-        likelihood = RecordLikelihood(r, flights, noise, np.zeros(0))
+        likelihood = RecordLikelihood(r, model.open, flights, noise, np.zeros(0))
         mean, sigma = likelihood.prior
         if eta is None:
             values = mean.copy()
             likelihood.named(values).flight[:] = centre
             eta = (values - mean) / sigma
-        likelihood = RecordLikelihood(r, flights, noise, eta).settled()
+        likelihood = RecordLikelihood(r, model.open, flights, noise, eta).settled()
         noise, eta = likelihood.noise, likelihood.eta
         m = likelihood.marginal()
         new = likelihood.named(likelihood.values(m.moments()[0])).flight
-        moved = np.max(np.abs(new - centre) / steps)
+        moved = np.max(np.abs(np.clip(new, low, high) - centre) / steps)
         centre = new
         if narrow and moved < 1.5:
             break
@@ -201,15 +213,15 @@ def whole_trajectory(r: Recording, wake: bool, edge: float = H_FILM) -> WholeTra
             steps, narrow = np.clip(likelihood.named(own).flight, 0.02 * steps, steps), True
     else:
         refuse(doubt for doubt in r.doubts if doubt.name == "speed")
-        raise InputError(Defect(f"start and restitutions have not settled in {_ROUNDS} rounds", file=r.name))
-    return _summary(r, integrate, likelihood, m)
+        return replace(_summary(model, likelihood, m), settled=False)
+    return _summary(model, likelihood, m)
 
 
-def _summary(r: Recording, integrate: Flights, likelihood: RecordLikelihood, m: Marginal) -> WholeTrajectory:
+def _summary(model: Bounces | Films, likelihood: RecordLikelihood, m: Marginal) -> WholeTrajectory:
     """The numbers, and a direct integration at the estimate."""
-    eta, C = m.moments()
+    r, (eta, C) = model.recording, m.moments()
     values, sigma = likelihood.values(eta), likelihood.prior[1]
-    path = integrate(likelihood.named(values).flight)
+    path = model(likelihood.named(values).flight)
     flights = likelihood.model(values)
     time = likelihood.own_time(values, flights)
     inside = (time > 0) & (time < flights.contacts[-1])
@@ -217,7 +229,7 @@ def _summary(r: Recording, integrate: Flights, likelihood: RecordLikelihood, m: 
     residual = r.gap_m - likelihood.predict(values)
     after = time >= flights.contacts[1]
     return WholeTrajectory(
-        r, integrate.wake, integrate.edge, likelihood, likelihood.names, values, C * np.outer(sigma, sigma),
+        r, model.wake, model.edge, likelihood, likelihood.names, values, C * np.outer(sigma, sigma),
         _log_moments(likelihood.noise.sigma_u, m.weights), _log_moments(likelihood.noise.tau, m.weights),
         m.log, path,
         float(np.max(away, initial=0.0) / r.sigma),
@@ -230,31 +242,6 @@ def _log_moments(values: NDArray, weights: NDArray) -> tuple[float, float]:
     ln = np.log(values)
     mean = float(weights @ ln)
     return float(np.exp(mean)), float(np.sqrt(max(weights @ (ln - mean) ** 2, 0.0)))
-
-
-def _first_guess(r: Recording, integrate: Flights) -> NDArray:
-    """Start at its prior, and for each bounce the restitution whose flight is nearest to the frames."""
-    from scipy.optimize import minimize_scalar
-
-    d, known, begin = r.conditions.sphere.diameter, [], r.start.prior.mean
-    touches = [r.clock.mean if math.isnan(t) else t for t in r.contacts_s]
-    if r.clock_of == "contact":
-        touches[0] = r.clock.mean
-    ends = [*touches[1:], np.inf]
-    for touch, end in zip(touches, ends, strict=True):
-        here = (r.time_s > touch) & (r.time_s < end)
-        time, gap = r.time_s[here] - touch, r.gap_m[here]
-
-        def misfit(e: float, time: NDArray = time, gap: NDArray = gap) -> float:
-            path = integrate(np.array([begin, *known, e]))
-            if len(path.impacts) <= len(known):
-                return float(np.sum(gap**2) / d**2)
-            after = path.gap(path.impacts[len(known)].time_s + time)
-            return float(np.sum((after - gap) ** 2) / d**2)
-
-        nearest = minimize_scalar(misfit, bounds=(0.05, 0.98), method="bounded", options={"xatol": 5e-3})
-        known.append(float(nearest.x))
-    return np.array([begin, *known])
 
 
 def distance_d(trajectory: WholeTrajectory, closures: Closures) -> tuple[Trajectory, float, float]:

@@ -41,6 +41,8 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         trajectory_support=trajectories.in_words(fig1.trajectories),
         trajectory_rows=trajectories.table(fig1.trajectories),
         trajectory_records=trajectories.records(fig1.trajectories),
+        left_out=fig1.trajectories.left_out,
+        left_out_form=trajectories.LEFT_OUT_FORM,
         records=len(measured),
         experiments=len({r.experiment.doi for r in measured}),
         spread=_spread(fig1.every),

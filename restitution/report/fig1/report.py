@@ -30,6 +30,7 @@ def write(folder: str | Path, speed: Speed = content.SPEED, runs: str | Path | N
         "readings.csv": records_text(verdict.table(fig1.judgements), _SCORED),
         "trajectories.csv": records_text(trajectories.records(fig1.trajectories), _ESTIMATED),
         "trajectory_readings.csv": records_text(trajectories.table(fig1.trajectories), _SCORED),
+        "trajectory_left_out.csv": records_text(fig1.trajectories.left_out, _SCORED),
         "index.html": page.render(fig1, speed, drawing.svg),
     }
     write_folder(folder, files)

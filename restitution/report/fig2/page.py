@@ -8,6 +8,7 @@ import pandas as pd
 
 from restitution import datasets
 from restitution.bounce.agreement import UNTIL
+from restitution.bounce.unbounded import REYNOLDS
 from restitution.impacts.shipped import impacts_of
 from restitution.report.fig2.bounce_table import main_rows, rows_of_other_records, run_row
 from restitution.report.fig2.content import DRY, RECORD, SHORT, VERIFICATION, Fig2
@@ -15,6 +16,7 @@ from restitution.report.fig2.findings import in_words
 from restitution.report.fig2.scores import BOUNCES, reference_apexes
 from restitution.report.fig2.sensitivity import sensitivity
 from restitution.report.fig2.solver import check, missed, numerics, older, settling
+from restitution.report.fig2.unbounded import RANGES, drag_rows, history_rows
 from restitution.report.page import number, percent, png_image
 from restitution.report.page import render as render_page
 from restitution.stokes import MEASURED_SPEEDS
@@ -26,7 +28,9 @@ if TYPE_CHECKING:
 DEFINITIONS = tuple(str(s) for s in MEASURED_SPEEDS)
 
 
-def render(fig2: Fig2, figure: Drawing, others: Drawing | None, flow: Drawing | None, forces: Drawing) -> str:
+def render(
+    fig2: Fig2, figure: Drawing, others: Drawing | None, flow: Drawing | None, forces: Drawing, alone: Drawing
+) -> str:
     """The whole page as text."""
     predictions = [run.case for run in fig2.runs.values() if run.case.record is None]
     return render_page(
@@ -52,6 +56,10 @@ def render(fig2: Fig2, figure: Drawing, others: Drawing | None, flow: Drawing | 
         settling=settling(fig2),
         physics=_forces_off(fig2.forces_off),
         forces=forces.svg,
+        unbounded=alone.svg,
+        drag_ranges=[REYNOLDS, *RANGES],
+        drag_rows=drag_rows(),
+        history_rows=history_rows(),
         numerics=[numerics(run) for run in fig2.runs.values()],
         checks=[check(c) for c in fig2.checks],
         missed=missed(fig2.checks),

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from restitution.files import write_folder
-from restitution.report.fig2 import content, page, plot
+from restitution.report.fig2 import content, page, plot, unbounded
 from restitution.report.fig2.scores import scores_table
 from restitution.tables.writing import table_text
 
@@ -30,7 +30,7 @@ def write(
 
     fig2 = content.gather(runs, verification, full, fresh, show)
     figure, others, flow = plot.draw(fig2), plot.draw_records(fig2), plot.draw_flow(fig2)
-    forces = plot.draw_forces(fig2.forces_off)
+    forces, alone = plot.draw_forces(fig2.forces_off), unbounded.draw()
     impacts = [run.impacts for run in fig2.runs.values() if len(run.impacts)]
     files: dict[str, str | bytes] = {
         "figure.svg": figure.svg,
@@ -39,7 +39,8 @@ def write(
         "impacts.csv": table_text(pd.concat(impacts, ignore_index=True), _DIGITS) if impacts else "",
         "physics.csv": table_text(fig2.forces_off, _DIGITS),
         "physics.png": forces.png,
-        "index.html": page.render(fig2, figure, others, flow, forces),
+        "unbounded.png": alone.png,
+        "index.html": page.render(fig2, figure, others, flow, forces, alone),
     }
     files |= {"records.png": others.png} if others is not None else {}
     files |= {"flow.png": flow.png} if flow is not None else {}

@@ -62,7 +62,7 @@ def _record(upper: Axes, lower: Axes, fit: TrajectoryFit, t: WholeTrajectory) ->
     upper.fill_between(1e3 * time, low, high, color="#9a9a9a", lw=0, label="95 % of the model, own restitutions")
     line = t.likelihood.predict(t.mean, time) / d
     upper.plot(1e3 * time, line, color="black", lw=1.2, label="model, own restitutions")
-    path, _, _ = distance_d(t, closures_of(fit.fit, fit.wake, fit.measured.edge, r.name))
+    path, _, _ = distance_d(t, closures_of(fit.fit, t.forces, fit.measured.edge, r.name))
     own = t.likelihood.own_time(t.mean, t.likelihood.model(t.mean), time)
     if r.clock_of == "contact":
         own = own - t.likelihood.model(t.mean).contacts[1] + path.impacts[0].time_s

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from restitution import datasets, laws
+from restitution.bounce.unbounded import drag_errors
 from restitution.laws.rebound import ReboundLaw
 from restitution.stokes import Speed, StokesNumber
 from restitution.validation.row import Kind, Row, Values, at_most
@@ -46,17 +47,13 @@ def resistance() -> Values:
 
 def drag() -> Values:
     """Rms deviation of drag laws from the measured points between Re 20 and 800."""
-    points = datasets.load("roos_willmarth1971")
-    use = points[(points.reynolds > 20) & (points.reynolds < 800)]
-    return {
-        name: float(np.sqrt(np.mean((laws.get(name)(use.reynolds.to_numpy()) / use.drag_coefficient - 1) ** 2)))
-        for name in ("schiller_naumann_1935", "clift_grace_weber_1978")
-    }
+    return {e.law: e.rms for e in drag_errors(20.0, 800.0) if e.law in _DRAG}
 
 
 _DIGITS = 1e-14
 """Where a check value is exact: round-off, over the value or 1."""
 _FAMILIES = ("rebound", "resistance", "drag", "history", "film", "dry")
+_DRAG = ("schiller_naumann_1935", "clift_grace_weber_1978")
 
 ROWS = (
     Row(
@@ -74,7 +71,7 @@ ROWS = (
     Row(
         "drag-law", "rms deviation of drag laws from measured drag, Re 20 to 800", Kind.MEASURED,
         "Roos & Willmarth, AIAA J. 9 (1971) 285",
-        tuple(at_most(name, 0.08) for name in ("schiller_naumann_1935", "clift_grace_weber_1978")),
+        tuple(at_most(name, 0.08) for name in _DRAG),
         "twice the scatter of the points about the standard curve, 3 to 4 %", drag,
     ),
 )  # fmt: skip

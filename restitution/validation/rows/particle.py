@@ -7,14 +7,13 @@ import math
 import numpy as np
 
 from restitution import datasets, laws
-from restitution.bounce import Closures, Release, bounce
-from restitution.bounce.forces import forces
-from restitution.bounce.tables import look
+from restitution.bounce import Closures, Release, bounce, unbounded
 from restitution.conditions import Conditions, Fluid, Sphere
 from restitution.stokes import StokesNumber
 from restitution.validation.row import Kind, Reference, Row, Values, at_most, near
 
 _RECORD = "gondret2002_st152"
+_PHASES = ("with u", "with du/dt")
 
 
 def energy() -> Values:
@@ -53,38 +52,16 @@ def basset_fall() -> Values:
 
 
 def oscillation(reynolds: float, frequency: float) -> Values:
-    """First harmonic of C_D of a sphere at u = U sin(w t), against the motion: in phase with u and with du/dt.
-
-    Forces are those that the integration has: drag, history by its sum of exponentials, added mass of 1/2.
-    """
-    d, nu, rho = 3e-3, 1e-5, 1000.0
-    U = reynolds * nu / d
-    w = frequency * U / d
-    c = Conditions(fluid=Fluid(density=rho, viscosity=rho * nu), sphere=Sphere(diameter=d, density=2000.0))
-    f = forces(c, Closures(wall=None, added_mass="free"), end=200 / w)
-    t = np.linspace(0, 2 * math.pi / w, 721)[:-1]
-    u, rate = U * np.sin(w * t), U * w * np.cos(w * t)
-    Re = np.maximum(np.abs(u) * f.reynolds_per_speed, 1e-12)
-    # dZ/dt = lambda (u - Z), periodic: Z = Im(lambda/(lambda + i w) U e^{i w t})
-    lagged = np.imag(np.multiply.outer(U * np.exp(1j * w * t), f.rates / (f.rates + 1j * w)))
-    at = np.clip((np.log(Re) - f.memory_start) * f.memory_per_step, 0, len(f.memory) - 1)
-    share = np.stack([np.interp(at, np.arange(len(f.memory)), term) for term in f.memory.T], axis=1)
-    memory = f.history * np.sum(f.weights * share * (u[:, None] - lagged), axis=1) + f.tail * rate
-    force = f.stokes * look(f.drag, Re) * u + memory + 0.5 * f.fluid_mass * rate
-    C_D = force / (rho * U**2 / 2 * math.pi * d**2 / 4)
-    return {
-        "with u": float(2 * np.mean(C_D * np.sin(w * t))),
-        "with du/dt": float(2 * np.mean(C_D * np.cos(w * t))),
-    }
+    """First harmonic of the coefficient of the force against the motion: in phase with u and with du/dt."""
+    default = Closures()
+    force = unbounded.oscillation(default.drag, default.history, unbounded.PHASES, reynolds, frequency)
+    return dict(zip(_PHASES, unbounded.amplitudes(unbounded.PHASES, force), strict=True))
 
 
 def oscillation_measured() -> tuple[Reference, ...]:
-    """First harmonic of the published C_D by least squares with harmonics 0 to 3."""
-    table = datasets.load("schneiders2013_oscillating")
-    phase = 2 * math.pi * table.time_over_period.to_numpy()
-    columns = [np.ones_like(phase), *(g(n * phase) for n in (1, 2, 3) for g in (np.sin, np.cos))]
-    fit = np.linalg.lstsq(np.stack(columns, axis=1), -table.drag_coefficient.to_numpy(), rcond=None)[0]
-    return near("with u", float(fit[1]), absolute=0.05), near("with du/dt", float(fit[2]), absolute=0.05)
+    """First harmonic of the published C_D by least squares with higher ones."""
+    found = unbounded.amplitudes(*unbounded.reference_oscillation())
+    return tuple(near(name, value, absolute=0.05) for name, value in zip(_PHASES, found, strict=True))
 
 
 def stokes_numbers() -> Values:
@@ -124,7 +101,7 @@ ROWS: tuple[Row, ...] = (
         Kind.PUBLISHED,
         "Schneiders et al., J. Comput. Phys. 235 (2013) 786, Fig. 20 (a case of Mei 1994)", oscillation_measured,
         "four times the scatter of the digitised points about their harmonics, 0.012", oscillation,
-        {"reynolds": 40.0, "frequency": 3.2},
+        {"reynolds": unbounded.RE_OSCILLATING, "frequency": unbounded.FREQUENCY},
         known={"with u": "steady drag and a memory of finite Re are added up, which no theory at Re 40 says"},
     ),
     Row(

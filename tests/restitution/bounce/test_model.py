@@ -1,6 +1,7 @@
 """The bouncing sphere as a whole: rebound modes, rest, records, input that cannot be used."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,9 +12,11 @@ from restitution.bounce.agreement import agreement, release_of
 from restitution.bounce.sensitivity import forces_off
 from restitution.bounce.shared import SharedFlights
 from restitution.bounce.wake import left_behind
+from restitution.cases import read_case
 from restitution.conditions import Conditions
 from restitution.errors import InputError
 from restitution.impacts import find_impacts
+from restitution.runs.point_particle import closures_of, predict
 from restitution.stokes import StokesNumber
 from restitution.tracks import Track
 
@@ -74,14 +77,15 @@ def test_resolved_film_loses_what_lubrication_theory_says():
 def test_history_force_is_the_direct_sum_over_the_trajectory():
     """After an impact: what the other forces leave of M dv/dt, against the integral of K over all before."""
     law = laws.get("mei_adrian_1992")
-    closures = Closures(wall=None, added_mass="free", history=law, e_dry=0.8)
+    steady = laws.get("brown_lawler_2003")
+    closures = Closures(drag=steady, wall=None, added_mass="free", history=law, e_dry=0.8)
     path = bounce(GONDRET, Release(0.012), closures, end=0.2, tolerance=1e-9)
     impact, r, nu, rho_f, d = path.impacts[0], 1.5e-3, 0.01 / 935, 935.0, 3e-3
     now = impact.time_s + 8e-3
     stokes, volume = 6 * math.pi * 0.01 * r, math.pi * d**3 / 6
     v = float(path.velocity(now))
     a = float(path.velocity(now + 1e-5) - path.velocity(now - 1e-5)) / 2e-5
-    drag = laws.get("schiller_naumann_1935")(v * d / nu) * rho_f * v**2 / 2 * math.pi * d**2 / 4
+    drag = steady(v * d / nu) * rho_f * v**2 / 2 * math.pi * d**2 / 4
     left = -((7800 + rho_f / 2) * volume * a + (7800 - rho_f) * volume * 9.81 + drag)
 
     # Stieltjes sum of K dv, dense towards s = now, where K is singular; one of its intervals holds the impact.
@@ -142,7 +146,7 @@ def test_quoted_impact_speed_is_met():
     law = Closures(rebound=laws.get("eq4_rational"))
     path = bounce(conditions, release_of(track, conditions, law), law, end=0.4)
     assert path.impacts[0].v_in == pytest.approx(0.518, rel=1e-6)
-    assert agreement(path, track).rms_d < 0.0105
+    assert agreement(path, track).rms_d < 0.02  # a sixteenth of the first apex, nothing fitted
 
 
 def test_elastic_film_stops_the_approach_earlier():
@@ -154,34 +158,64 @@ def test_elastic_film_stops_the_approach_earlier():
     assert paths[2].apexes()[0] > paths[0].apexes()[0]
 
 
-def test_wake_has_the_momentum_of_the_drag():
-    """Steady fall leaves D/U per unit of length, on an area that grows as pi nu t."""
-    U, D = 0.586, 1e-3
-    t = np.linspace(0, 0.02, 30)
-    wake = left_behind(
-        OwnWake(3.0), t, 0.0117 - U * t, np.full(30, -U), False, np.full(30, D), 1.07e-5, 935.0, 1.5e-3
-    )
-    area = 3 * math.pi * 1.5e-3**2
-    assert wake.speed[100] * 935 * area == pytest.approx(-D / U, rel=1e-12)
-    age, spread = 0.05, area + 4 * math.pi * 1.07e-5 * 0.05
-    assert wake.speed[100] / (1 + wake.rate * age) * 935 * spread == pytest.approx(-D / U, rel=1e-12)
-    assert wake.time[100] == pytest.approx((0.0117 - 100 / wake.per_gap) / U, rel=1e-9)
+def test_a_wake_forms_with_the_way_and_dies_out():
+    U, d, nu = 0.586, 3e-3, 1.07e-5
+    short, long, steady = (left_behind(OwnWake(), 0.1, U, way * d, d, nu) for way in (1.0, 17.0, math.inf))
+    # A fall of a diameter leaves a thirtieth of what a steady one does; 17 d nearly all of it.
+    assert 0.02 < short.speed / steady.speed < 0.05
+    assert 0.9 < long.speed / steady.speed < 1
+    assert -0.74 * U < steady.speed < -0.5 * U  # towards the wall, slower than the sphere was
+    slow = left_behind(OwnWake(), 0.1, 0.1 * U, math.inf, d, nu)
+    assert slow.speed / (0.1 * U) > steady.speed / U  # weaker for its size where Re is small
+    assert steady.rate == pytest.approx(U / (3.4 * d))
 
 
-def test_one_constant_for_all_records():
-    """K of Eq. (4) fitted to St 152 alone, with the wake; the same K then serves the other laboratory."""
+def test_a_rebound_meets_the_wake_of_a_long_approach_and_hardly_that_of_a_drop():
+    """First apexes with the wake over without: a fall that was steady, and one from rest from a diameter."""
+    law = laws.get("eq4_exponential", K=10.7)
+    lower = []
+    for release in (RELEASE, Release(3e-3)):
+        apexes = [
+            bounce(GONDRET, release, Closures(rebound=law, wake=w), end=0.4).apexes() for w in (OwnWake(), None)
+        ]
+        lower.append(apexes[0][:2] / apexes[1][:2] - 1)
+    assert lower[0][0] < -0.05
+    assert abs(lower[1][0]) < 0.01
+    # The second bounce comes from an apex of 2 d: its approach leaves little.
+    drops = [i.v_in for i in bounce(GONDRET, RELEASE, Closures(rebound=law, wake=OwnWake()), end=0.4).impacts]
+    assert drops[1] < drops[0]
+
+
+def test_the_wake_alone_brings_the_point_particle_to_the_resolved_first_apex():
+    """The run at 20 cells, way 9 d, e_eff imposed: 7.80 mm; without the wake the model is an eighth higher."""
+    case = read_case("gondret_st152_20_small_imposed")
+    apex = {
+        w: float(predict(case, closures=replace(closures_of(case), wake=w)).path.apexes()[0])
+        for w in (None, OwnWake())
+    }
+    resolved = 7.795e-3
+    assert apex[None] / resolved > 1.08
+    assert apex[OwnWake()] / resolved == pytest.approx(1, abs=0.04)
+
+
+def test_K_of_one_laboratory_and_the_wake_of_the_runs_serve_the_other():
+    """K of Eq. (4) by the first apexes of the drops; the sphere of St 152, on which nothing is chosen, follows."""
     from scipy.optimize import least_squares
 
-    def closures(K):
-        return Closures(rebound=laws.get("eq4_exponential", K=float(K[0])), wake=OwnWake())
+    measured = np.array([datasets.resource(n).quoted["apex_m"][0] for n in DROPS])
 
-    def compare(K):
-        return agreement(bounce(GONDRET, RELEASE, closures(K), end=0.3), RECORD)
+    def closures(K, wake):
+        return Closures(rebound=laws.get("eq4_exponential", K=float(K[0])), wake=wake)
 
-    K = least_squares(lambda x: compare(x).residual_m / 3e-3, [12.0], diff_step=1e-2).x
-    assert compare(K).rms_d < 0.03
-    for name in DROPS:
-        assert agreement(drop(name, closures(K)), datasets.load_track(name)).rms_d < 0.08
+    def error(K):
+        return np.array([drop(n, closures(K, OwnWake())).apexes()[0] for n in DROPS]) / measured - 1
+
+    K = least_squares(error, [12.0], diff_step=1e-2).x
+    away = {
+        w: agreement(bounce(GONDRET, RELEASE, closures(K, w), end=0.3), RECORD).rms_d for w in (OwnWake(), None)
+    }
+    assert away[OwnWake()] < 0.5 * away[None]
+    assert away[OwnWake()] < 0.2
 
 
 def test_first_record_with_two_constants_fitted():
@@ -232,7 +266,7 @@ def test_every_force_matters_in_its_sense():
         (lambda: Closures(e_dry=1.2), "e_dry"),
         (lambda: Closures(film=math.nan), "film"),
         (lambda: Closures(reduced_modulus=-1.0), "reduced_modulus"),
-        (lambda: OwnWake(0.0), "wake.area"),
+        (lambda: OwnWake(-0.1), "wake.strength"),
         (lambda: Release(math.nan), "release.gap"),
         (lambda: Release(-1e-3), "release.gap"),
         (lambda: Release(1e-3, math.inf), "release.speed"),

@@ -13,7 +13,7 @@ from tests.flights import STEEL_IN_OIL
 
 @pytest.mark.parametrize("height", [1e-3, 1e-2, 5e-2])
 def test_a_fall_from_rest_obeys_the_equation_of_motion(height):
-    fluid, sphere, drag = STEEL_IN_OIL.fluid, STEEL_IN_OIL.sphere, laws.get("schiller_naumann_1935")
+    fluid, sphere, drag = STEEL_IN_OIL.fluid, STEEL_IN_OIL.sphere, laws.get("clift_grace_weber_1978")
     displaced = fluid.density * math.pi * sphere.diameter**3 / 6
 
     def motion(_, state):

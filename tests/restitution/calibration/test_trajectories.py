@@ -18,7 +18,7 @@ from restitution.calibration.reading.reading import Reading
 from restitution.calibration.result.fit_file import read_fit
 from restitution.calibration.trajectories.correlated_noise import gram_matrices
 from restitution.calibration.trajectories.fit import Measured, closures_of, fit_law, law_fit, observations
-from restitution.calibration.trajectories.flights import Flights
+from restitution.calibration.trajectories.flights import Bounces
 from restitution.calibration.trajectories.recordings import read_recordings, recording
 from restitution.calibration.trajectories.synthetic import Filming, K, draw, filmed
 from restitution.calibration.trajectories.whole_trajectories import whole_trajectory
@@ -92,7 +92,7 @@ def test_map_is_the_integrated_trajectory_near_its_centre(noisy):
     _, _, found = noisy
     flights = found.likelihood.flights
     x = flights.centre + flights.steps * np.array([0.8, -0.9, 0.7, -0.8])
-    path, near = Flights(found.recording, False, 0.1)(x), flights.expand(x)
+    path, near = Bounces(found.recording, False, 0.1)(x), flights.expand(x)
     time = np.linspace(0, near.contacts[-1], 300)
     # A third of the error of a reading, 1e-5 m, the time that the sphere takes for that, and a third of the
     # smallest error that an impact speed has in a shipped record, 8e-4.
@@ -302,7 +302,7 @@ def test_the_edge_is_kept_with_the_fit_and_its_law_flies_at_it(noisy):
     fit = fit_law(measured, Plan(model_of("eq4_exponential"), scatter=False), Reading())
     result = fit.result()
     assert result.edge_d == 0.2
-    assert closures_of(fit.fit, False, 0.2).film == 0.2
+    assert closures_of(fit.fit, {}, 0.2).film == 0.2
     assert fit.slopes.likelihood.observations.edge == 0.2
     assert result.values["K"] > fitted_K(found)[0] + 1
     older = {k: v for k, v in json.loads(result.to_json()).items() if k != "edge_d"}

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
-from restitution import datasets
+from restitution import datasets, laws
 from restitution.bounce import Closures, Release, bounce
 from restitution.cli import main
 from restitution.flights import Flights, drag, free, impacts_of
@@ -67,7 +67,8 @@ def test_with_drag_an_independent_integration_gives_back_its_restitutions():
     e = (0.8, 0.7, 0.6)
     contacts, apexes, speeds = integrated(e, 0.03)
     # Within the film no viscous force acts: so thin, it takes no part.
-    closures = Closures(wall=None, added_mass="free", history=None, measured=(), film=1e-4)
+    steady = laws.get("schiller_naumann_1935")
+    closures = Closures(drag=steady, wall=None, added_mass="free", history=None, measured=(), film=1e-4)
     before, after = drag.speeds("times", np.arange(5), contacts, STEEL_IN_OIL, closures=closures)
     np.testing.assert_allclose(before, speeds, rtol=1e-4)
     np.testing.assert_allclose((after / before)[:3], e, rtol=2e-4)
