@@ -131,10 +131,8 @@ def law_fit(plan: Plan, o: Observations) -> Fit:
     return estimate(plan, o)
 
 
-def closures_of(
-    fit: Fit, forces: Mapping[str, Any], edge: float = H_FILM, record: str | None = None
-) -> Closures:
-    """The bouncing sphere with the fitted law, under the ``forces`` of a record; of separate parameters its own."""
+def closures_of(fit: Fit, forces: Mapping[str, Any], edge: float = H_FILM, record: str | None = None) -> Closures:
+    """The bouncing sphere with the fitted law, under the ``forces`` of a record, with its separate parameters."""
     values = dict(fit.likelihood.fixed) | values_of(fit, record)
     own = {p.name: values[p.name] for p in fit.likelihood.model.parameters}
     e_dry = values["e_dry"] if isinstance(values.get("e_dry"), float) else None
