@@ -8,7 +8,9 @@ v being the speed at the edge and V, of which e_eff is the ratio, that at the wa
 at each of two edges: a sphere that comes through the wider one with a given speed is carried to the narrower one
 by the forces of :class:`restitution.bounce.Closures`, rebounds there with e_narrow, and is carried out again. The
 restitution at the wider edge is that which gives the same speed outwards there; of a rebound that does not get
-there, the same apex. The wider film thus has more of the loss in it. The wake of the approach takes no part.
+there, the same apex. The wider film thus has more of the loss in it. The wake of the approach takes no part, and
+drag and history are those of Schiller & Naumann and Dorgan & Loth, whatever the defaults are: a conversion belongs
+to what a law says, and runs have been told its numbers.
 """
 
 from __future__ import annotations

@@ -91,7 +91,7 @@ def test_derivatives_to_the_unknowns_are_those_of_what_the_camera_shows(noisy):
 def test_map_is_the_integrated_trajectory_near_its_centre(noisy):
     _, _, found = noisy
     flights = found.likelihood.flights
-    x = flights.centre + flights.steps * np.array([0.8, -0.9, 0.7, -0.8])
+    x = flights.centre + flights.steps * np.array([0.8, -0.6, 0.7, -0.9, 0.7, -0.8])
     path, near = Bounces(found.recording, False, 0.1)(x), flights.expand(x)
     time = np.linspace(0, near.contacts[-1], 300)
     # A third of the error of a reading, 1e-5 m, the time that the sphere takes for that, and a third of the
