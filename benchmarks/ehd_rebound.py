@@ -1,4 +1,4 @@
-"""The elastohydrodynamic rebound solved from its equations (:mod:`restitution.bounce.ehd_solution`), beside the
+"""The elastohydrodynamic rebound solved from its equations (:mod:`restitution.laws.ehd_solution`), beside the
 table.
 
 python -m benchmarks.ehd_rebound
@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from restitution.bounce.ehd_solution import rebound
+from restitution.laws.ehd_solution import rebound
 from restitution.laws.elastohydrodynamic import NODES_E, NODES_ST
 
 

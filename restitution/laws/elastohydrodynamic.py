@@ -4,7 +4,7 @@ In the limit of a smooth sphere no contact occurs. With the gap profile h = D + 
 D* = [m v^2/(E* sqrt(r))]^(2/5) and St as in this package, the lubrication equation, the elastic half-space
 and the momentum of the sphere give a rebound that depends on St alone (Davis, Serayssol & Hinch 1986; in
 these variables Bertin 2024). The points below are the limit of fine grids of
-:mod:`restitution.bounce.ehd_solution`, to about 2e-4: speed going out at D = D* over speed coming in at D = D*,
+:mod:`restitution.laws.ehd_solution`, to about 2e-4: speed going out at D = D* over speed coming in at D = D*,
 with e_dry = 1. An earlier solution, made independently with the film cut off at a radius of about 5 lengths, lies
 higher, by 0.039 at St = 10, 0.005 at 100 and nothing at 500; cutting the film in the same way reproduces it within
 0.0013.

@@ -5,9 +5,9 @@ black box within one edge, as it is in the simulation: every frame tells of them
 do not see a wake that dies out within two frames. They are kept in ``restitutions.csv`` by record, edge and model,
 written by ``python -m benchmarks.film_edges --write``.
 
-What runs have been told does not follow the fits from day to day: the table is of the drag of Schiller & Naumann and
-of a wake of fixed strength. Today's fits, with drag, history and wake among the unknowns, differ by up to 0.03;
-written anew it would raise the version of the physics.
+What runs have been told does not follow the fits from day to day: the table is of the drag of Schiller & Naumann
+and of a wake of fixed strength. Today's fits, with drag, history and wake among the unknowns, differ by up to
+0.03; written anew it would raise the version of the physics.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ import numpy as np
 
 from restitution import laws
 from restitution.bounce import Closures, unbounded
+from restitution.laws.drag import STANDARD
 from restitution.report.drawing import Drawing, as_text, save, style
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def draw() -> Drawing:
 
 def _drag(ax: Axes) -> None:
     Re, C_D = unbounded.measured_drag()
-    default, fine = Closures().drag, np.geomspace(*unbounded.REYNOLDS, 300)
+    default, fine = STANDARD(), np.geomspace(*unbounded.REYNOLDS, 300)
     ax.plot(Re, 100 * (C_D / default(Re) - 1), label="Roos & Willmarth 1971, measured", **_SYMBOLS)
     names = [default.name, *(n for n in laws.names("drag") if n not in (default.name, "stokes_1851"))]
     for name, (colour, dashes) in zip(names, LOOKS, strict=False):
@@ -78,7 +79,7 @@ def _oscillation(ax: Axes) -> None:
 
 def drag_rows() -> list[dict]:
     """Bias and rms of each drag law by ranges of Re, in per cent, as texts."""
-    default = Closures().drag.name
+    default = STANDARD.name
     by_range = [{e.law: e for e in unbounded.drag_errors(*bounds)} for bounds in (unbounded.REYNOLDS, *RANGES)]
     return [
         {

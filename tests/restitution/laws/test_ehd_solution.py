@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from restitution.bounce.ehd_solution import compliance, nodes, rebound
+from restitution.laws.ehd_solution import compliance, nodes, rebound
 from restitution.laws.elastohydrodynamic import NODES_E, NODES_ST
 
 
