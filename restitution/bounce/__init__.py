@@ -17,7 +17,7 @@ the wall does to the added mass, :mod:`~restitution.bounce.wake` what a rebound 
 :mod:`~restitution.bounce.agreement` how far a record is, :mod:`~restitution.bounce.sensitivity` what matters,
 :mod:`~restitution.bounce.edges` what an e_eff of one edge of the film is at another.
 :mod:`~restitution.bounce.model` puts them together from ``forces``, ``drive`` and ``tables``, ``shared`` for many
-restitutions at once; :mod:`~restitution.bounce.unbounded` holds drag and history against references without a wall.
+restitutions at once; :mod:`~restitution.bounce.unbounded` holds drag and history against references, no wall near.
 """
 
 from restitution.bounce.agreement import distance_from_contact_d, release_of
