@@ -1,4 +1,4 @@
-"""Relaxation rates, uniform and by place, on flows that tell them apart: vortex, channel, cavity, spheres.
+"""Relaxation rates, uniform and by place, on flows that tell them apart: vortex, channel, spheres.
 
     python -m benchmarks.collisions [--only NAME ...] [--rates NAME ...] [--json FILE]
 
@@ -19,7 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.rebound_grid import rebound
-from lbm import DivergenceError, NoSlip, Rates, RatesByPlace, Simulation
+from lbm import DivergenceError, Rates, RatesByPlace, Simulation
 from lbm.observers import Sums
 from lbm.problems.held_sphere import held_sphere as held
 from lbm.problems.spheres import approach, drag_in_frame, translation
@@ -56,8 +56,6 @@ SPECTRAL = {5: 0.8404, 6: 0.7578}
 """E/E0 of the Taylor-Green vortex at Re 400 over t U k, by a spectral code."""
 GAPS = (2.0, 1.5, 1.0, 0.75, 0.6, 0.5, 0.45, 0.4, 0.3, 0.2, 0.1, 0.05)
 """Between sphere and wall, in cells."""
-CAVITY = -0.3885698
-"""Least u on the centre line of the square cavity, Re 1000: Botella & Peyret, Comput. Fluids 27 (1998) 421."""
 
 
 def taylor_green(preset: Callable, cells: int = 48, reynolds: float = 400, times=SPECTRAL) -> dict[str, float]:
@@ -89,20 +87,6 @@ def channel(preset: Callable, cells: int = 16, viscosity: float = 0.006) -> dict
     flow.run(round(0.7 * cells**2 / viscosity))
     error = flow.velocity[0, 0, 0] / exact - 1
     return {"at the wall": float(error[0]), "in the middle": float(error[cells // 2])}
-
-
-def cavity(preset: Callable, cells: int) -> dict[str, float]:
-    """Error of the least u on the centre line of a square cavity, lid and still walls, after 100 lid times."""
-    speed = 0.1
-    faces = {"x": "no-slip", "z-": "no-slip", "z+": NoSlip((speed, 0, 0))}
-    flow = Simulation((cells, 4, cells), preset(speed * cells / 1000), faces=faces)
-    flow.run(round(100 * cells / speed))
-    u = flow.velocity[0, :, 0]
-    line = u[(cells - 1) // 2 : cells // 2 + 1].mean(axis=0)
-    low = int(np.argmin(line))
-    least = np.polynomial.Polynomial.fit([-1, 0, 1], line[low - 1 : low + 2], 2)
-    at = least.deriv().roots()[0]
-    return {"least u": float(least(at)) / speed / CAVITY - 1}
 
 
 def held_sphere(preset: Callable, diameter: int, reynolds: float) -> dict[str, float]:
@@ -154,9 +138,6 @@ FLOWS: dict[str, tuple[int, Callable]] = {
     "moving sphere, 10 cells, Re 100": (UNIFORM, moving_over_held),
     "first rebound at St 152, 10 cells, 0.025": (len(CANDIDATES), lambda preset: first_rebound(preset, 0.025)),
     "first rebound at St 152, 10 cells, 0.05": (len(CANDIDATES), lambda preset: first_rebound(preset, 0.05)),
-    "square cavity Re 1000, 24^2": (len(CANDIDATES), lambda preset: cavity(preset, 24)),
-    "square cavity Re 1000, 48^2": (len(CANDIDATES), lambda preset: cavity(preset, 48)),
-    "square cavity Re 1000, 96^2": (len(CANDIDATES), lambda preset: cavity(preset, 96)),
     "held sphere Re 100, 8 cells": (UNIFORM, lambda preset: held_sphere(preset, 8, 100)),
     "held sphere Re 300, 10 cells": (UNIFORM, lambda preset: held_sphere(preset, 10, 300)),
 }
