@@ -9,6 +9,7 @@ of the base alone.
 from __future__ import annotations
 
 import difflib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -67,12 +68,12 @@ def read_case(given: str | Path) -> Case:
 def find(given: str | Path) -> Path:
     """The file of a case: as given, or the shipped one of that name."""
     path = Path(given)
-    if _is_file(path):
+    if _is(path.is_file):
         return path
     known = names()
     if str(given) in known:
         return FOLDER / f"{given}.toml"
-    if path.is_dir():
+    if _is(path.is_dir):
         raise InputError(Defect("is a folder; name the case's TOML file", file=str(given)))
     near = difflib.get_close_matches(path.stem, known, n=3, cutoff=0.5)
     hint = f"did you mean {' or '.join(near)}?" if near else "restitution simulate --list names those"
@@ -102,13 +103,13 @@ def _content(path: Path, depth: int = 0) -> dict[str, Any]:
 def _named_in(path: Path, name: str) -> Path:
     """The file of the case that the file ``path`` names: one beside it, or a shipped one."""
     beside = path.parent / f"{name.removesuffix('.toml')}.toml"
-    return beside if _is_file(beside) else find(name)
+    return beside if _is(beside.is_file) else find(name)
 
 
-def _is_file(path: Path) -> bool:
-    """As Path.is_file, which raises for a name that is too long for one."""
+def _is(asked: Callable[[], bool]) -> bool:
+    """What a path says it is; one whose name is too long for any raises instead."""
     try:
-        return path.is_file()
+        return asked()
     except OSError:
         return False
 
