@@ -39,8 +39,6 @@ FREEDOM = 8.0
 """Of Student's t of the proposal: its tails must not be thinner than those of what it stands for."""
 _CELLS = {0: 1, 1: 48, 2: 16}
 """Cells of the grid along each standard deviation, by how many there are."""
-_SCAN = 33
-"""Places at which the density is looked at to find where it begins."""
 _FALL = 12.0
 """The grid ends where ln of the density has fallen by this much."""
 _ROUNDS = 4
@@ -149,7 +147,7 @@ class _Proposal:
         ) - slope * (earlier @ likelihood.jointly.away(self.best)[self.law])
         self.shift, self.spread = np.zeros(len(self.law)), np.eye(len(self.law))
         self._near: dict[tuple[float, ...], tuple[NDArray, NDArray]] = {}
-        self.edges = [np.linspace(*self._range(j), _CELLS[len(self.deviations)] + 1) for j in self.deviations]
+        self.edges = [np.linspace(0.0, self._reach(j), _CELLS[len(self.deviations)] + 1) for j in self.deviations]
         self.mass = self._masses()
 
     def near(self, phi: tuple[float, ...]) -> tuple[NDArray, NDArray]:
@@ -197,8 +195,8 @@ class _Proposal:
     def _own(self) -> list[Parameter]:
         return [self.parameters[j] for j in self.law]
 
-    def _range(self, j: int) -> tuple[float, float]:
-        """Where the density of one standard deviation begins and ends, the others at their estimates."""
+    def _reach(self, j: int) -> float:
+        """Where the density of one standard deviation ends, the others at their estimates."""
         k, most = self.deviations.index(j), self.parameters[j].bounds[1]
         typical = float(np.sqrt(np.mean(self.r**2)))
 
@@ -214,11 +212,7 @@ class _Proposal:
             end, highest = min(1.3 * end, most), max(highest, here)
         while end > 1e-9 and highest - at(end / 1.3) > _FALL:
             end /= 1.3
-        # Of many impacts it is known within a small part of its value: cells from nought on would be too wide.
-        places = np.linspace(0.0, end, _SCAN)
-        heights = np.array([at(float(x)) for x in places])
-        first = int(np.argmax(heights > heights.max() - _FALL))
-        return float(places[max(first - 1, 0)]), end
+        return end
 
     def _masses(self) -> NDArray:
         """Of the cells, by the middle of each, shape (cells,) or (cells, cells)."""
