@@ -98,13 +98,14 @@ def noise(time: NDArray, value: NDArray) -> float:
     weight = 1.0 / distance.prod(axis=2)
     weight /= np.linalg.norm(weight, axis=1, keepdims=True)
     sigma = np.median(np.abs((weight * y).sum(axis=1))) / 0.6745
+    # Noise-free records keep a finite weight.
+    return float(max(sigma, grid_step(value) / np.sqrt(12), 1e-6 * np.ptp(value)))
+
+
+def grid_step(value: NDArray) -> float:
+    """The step of which all distances between values are multiples, as of pixels; 0 where there is none."""
     span = np.ptp(value)
     levels = np.unique(np.round(value / span, 9)) * span if span > 0 else np.zeros(1)
-    return float(max(sigma, _grid(levels) / np.sqrt(12), 1e-6 * span))  # noise-free records keep a finite weight
-
-
-def _grid(levels: NDArray) -> float:
-    """The step of which all distances between ``levels`` are multiples; 0 where there is none."""
     steps = np.diff(levels)
     if not len(steps):
         return 0.0

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.commands.console import cell, show, show_facts, show_rows
+from restitution.commands.console import cell, show, show_doubts, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.datasets.package import Resource
@@ -31,7 +31,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     add = actions.add_parser(
         "validate",
         help="name every defect of a CSV file or a data package",
-        description="Name file, row, column, value and rule of every defect. Without PATH: the shipped package.",
+        description="Name file, row, column, value and rule of every defect, and what is doubtful about a table "
+        "without defects. Without PATH: the shipped package.",
     )
     add.add_argument(
         "path", nargs="?", metavar="PATH", help="a CSV file, a folder with datapackage.json, or that file"
@@ -39,6 +40,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     add.add_argument("--schema", metavar="NAME", help="kind of table of a CSV file (default: told by its header)")
     options.add_columns(add)
     add.add_argument("--unit", choices=("m", "mm"), default="m", help="unit of gap_m in a CSV file (default: m)")
+    add.add_argument(
+        "--conditions", metavar="FILE", help="fluid and sphere of a track in TOML, which it is held against"
+    )
+    options.add_strict(add)
     add.set_defaults(run=run_validate)
 
 
@@ -121,32 +126,49 @@ def _about(r: Resource) -> list[tuple[str, str]]:
 
 
 def run_validate(args: argparse.Namespace) -> None:
-    """Print one line a valid file; raises :class:`InputError` with the defects otherwise."""
+    """Print one line a valid file, and doubts; raises :class:`InputError` with the defects otherwise."""
     from restitution import datasets
+    from restitution.commands import data_doubts
+    from restitution.conditions import read_conditions
     from restitution.datasets.checks import check_package, infer_schema
     from restitution.datasets.package import read_package
+    from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
     from restitution.tables.reading import check_table
 
     columns = dict(args.column)
+    conditions = read_conditions(args.conditions) if args.conditions else None
     path = None if args.path is None else Path(args.path)
     if path is None or path.is_dir() or path.suffix == ".json":
-        if args.schema or columns or args.unit != "m":
-            raise InputError("--schema, --column and --unit describe a CSV file; a data package states its own")
+        if args.schema or columns or args.unit != "m" or conditions is not None:
+            rule = "--schema, --column, --unit and --conditions describe a CSV file; a data package states its own"
+            raise InputError(rule)
         _raise(check_package(path))
         place, package = read_package(path or datasets.folder())
+        doubts = data_doubts.of_package(place, package)
+        if args.strict:
+            refuse(doubts)
         for r in package.resources:
             show(f"{place / r.path}: valid {r.table} table")
+        show_doubts(doubts)
         return
 
     if args.schema is None and not columns and (impacts := _impacts_of_a_fit(path)) is not None:
+        doubts = data_doubts.of_impact_table(path, columns)
+        if args.strict:
+            refuse(doubts)
         show(f"{path}: valid table for a fit, {impacts}")
+        show_doubts(doubts)
         return
     schema = datasets.schema(args.schema) if args.schema else infer_schema(path, columns)
     if args.unit == "mm" and "gap_m" not in schema.columns:
         raise InputError(Defect(f"--unit mm: a {schema.name} table has no gap_m", file=str(path)))
     _raise(check_table(path, schema, columns, {"gap_m": 1e-3} if args.unit == "mm" else None))
+    doubts = data_doubts.of_table(path, schema, columns, 1e-3 if args.unit == "mm" else 1.0, conditions)
+    if args.strict:
+        refuse(doubts)
     show(f"{path}: valid {schema.name} table")
+    show_doubts(doubts)
 
 
 def _impacts_of_a_fit(path: Path) -> str | None:

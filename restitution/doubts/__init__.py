@@ -3,7 +3,8 @@
 Input that cannot be used is refused; input that can be used but contradicts what every such record obeys gives its
 result and a :class:`~.doubt.Doubt` that names the likely mistake. Read :mod:`.doubt`, :mod:`.mistracked`
 (frames that no flight passes through), :mod:`.falls` (what the flights of a track say of gravity),
-:mod:`.motion` (a track against its conditions), :mod:`.film_loss` (impacts against all measured ones).
+:mod:`.record` (what no record has), :mod:`.motion` (a track against its conditions), :mod:`.film_loss` (impacts
+against all measured ones).
 """
 
 from restitution.doubts.doubt import Doubt, refuse

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from restitution.doubts import falls
+from restitution.doubts import falls, record
 from restitution.doubts.doubt import Doubt
 from restitution.tracks import Contacts, Track, contacts
 
@@ -28,8 +28,6 @@ BEYOND = 1.3
 """Times the terminal speed above which a sphere does not fall: laws of drag agree to a tenth."""
 CENTRE_D = 0.2
 """A record that never comes nearer to the wall, in diameters, has the height of the centre in place of the gap."""
-_THINNEST = 2e-6
-"""Viscosity in Pa s below that of any fluid that spheres are dropped in: liquid helium has 3e-6, gases 1e-5."""
 _LIGHT = 30.0
 """Density in kg/m3 below which one of a solid or a liquid is taken to be in g/cm3."""
 
@@ -39,7 +37,7 @@ def of_track(track: Track, found: Contacts, conditions: Conditions, where: str =
     doubts = _direction(track, found, conditions)
     if not doubts:
         doubts = [
-            *_thin(conditions),
+            *record.of_record(track, found, conditions),
             *_hovering(track, found, conditions),
             *(_of_pace(track, found, conditions) or _centre(track, conditions)),
         ]
@@ -97,17 +95,6 @@ def _convex(track: Track) -> bool:
     second = y[2 * s :] - 2 * y[s:-s] + y[: -2 * s]
     seen = second[np.abs(second) > 5 * track.sigma]
     return len(seen) > 3 and np.count_nonzero(seen > 0) > 0.5 * len(seen)
-
-
-def _thin(conditions: Conditions) -> list[Doubt]:
-    viscosity = conditions.fluid.viscosity
-    if viscosity >= _THINNEST:
-        return []
-    message = (
-        f"the viscosity, {viscosity:g} Pa s, is below that of any gas: is it kinematic (write its unit, as in "
-        '"10 cSt"), or in another unit?'
-    )
-    return [Doubt("viscosity", message)]
 
 
 def _hovering(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:

@@ -30,6 +30,7 @@ NUMBERS = (
     "bounce number",
     "impact number",
     "hit",
+    "event",
     "n",
     "no",
 )

@@ -18,7 +18,11 @@ from restitution.units import UnitError, quantity
 
 _NUMERIC = 0.5
 """Part of the filled cells of a column of numbers that are numbers; the others are defects, named one by one."""
-_FRAMES = {"frame": "frame", "frames": "frame", "fr": "frame", "pixel": "px", "pixels": "px", "px": "px"}
+_FRAMES = {
+    "frame": "frame", "frames": "frame", "fr": "frame", "pixel": "px", "pixels": "px", "px": "px",
+    "sec": "s", "msec": "ms",
+}  # fmt: skip
+"""Units that are none of SI, or have other names there."""
 _LATTICE = {"d": "d"}
 _SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>s|ms|us|m|mm|cm|um|px)")
 _BRACKETS = re.compile(r"(?P<name>.*?)\s*[(\[](?P<unit>[^()\[\]]+)[)\]]")
@@ -56,8 +60,8 @@ def heading_of(layout: Layout) -> Heading:
         placed = _placed(cells, width, filled)
         if placed is None or not _are_words(placed):
             continue
-        if all(_is_unit(text) for text in placed.values()) and at > 0 and not units:
-            units = {i: _bare(text) for i, text in placed.items()}
+        if _are_units(placed) and at > 0 and not units:
+            units = {i: _bare(text) for i, text in placed.items() if _is_unit(text)}
             continue
         known = next((j for j in range(at) if program_of(above[j][1]) and _placed(above[j][1], width, filled)), at)
         line, placed = above[known][0], _placed(above[known][1], width, filled) or placed
@@ -135,6 +139,13 @@ def _are_words(placed: dict[int, str]) -> bool:
     return len(texts) > 0 and sum(map(is_number, texts)) < 0.5 * len(texts)
 
 
+def _are_units(placed: dict[int, str]) -> bool:
+    """Whether cells are units: each is one, or all are in brackets and some are, as (mm) beside (counts)."""
+    filled = [text for text in placed.values() if text]
+    bracketed = all(text[0] in "([" and text[-1] in ")]" for text in filled)
+    return all(map(_is_unit, filled)) or (bracketed and any(map(_is_unit, filled)))
+
+
 def _from_comments(heading: Heading, layout: Layout, width: int, filled: list[int], before: int) -> dict[int, str]:
     """Names in the last comment above the data that has one for each column, however that line is separated.
 
@@ -206,7 +217,7 @@ def _with_tracks(names: dict[int, str], above: list[list[str]]) -> dict[int, str
 
 def _is_unit(text: str) -> bool:
     text = _bare(text)
-    if not text or text in _FRAMES.values() or text in _LATTICE:
+    if not text or text.lower() in _FRAMES or text in _FRAMES.values() or text in _LATTICE:
         return True
     if text[0].isdigit():
         return False

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,16 @@ class Program:
     """Positions are those of centres; None: the user decided."""
     quality: str | None = None
     """A column that says how sure a position is, from 0 to 1."""
+    either_way: bool = False
+    """Whether positions grow up or down depends on its version or settings, so that it is asked."""
+    counted: bool = False
+    """Its rows are frames, one after another; the files have no column of them."""
+    joined: tuple[str, str | Callable] | None = None
+    """How it joins the name of a track to that of a column: a pattern, and what makes it "track/column"."""
+
+    def renamed(self, name: str) -> str:
+        """A column's name as "track/column"."""
+        return name if self.joined is None else re.sub(self.joined[0], self.joined[1], name, flags=re.IGNORECASE)
 
 
 TRACKMATE = Program(
@@ -58,7 +68,7 @@ KINOVEA = Program(
     "Kinovea",
     lambda names: (
         any(re.fullmatch(r"time( [(\[]\w+[)\]])?", name) for name in names)
-        and any(re.fullmatch(r".+/\d+/[xy]", name) for name in names)
+        and any(re.fullmatch(r".+/\d+/[xy]|trajectory \d+/[xy]", name) for name in names)
     ),
     time="time", position="y", units={"time": "ms"},
 )  # fmt: skip
@@ -71,38 +81,77 @@ TRACKER = Program(
     time="t", position="y", units={"t": "s"},
 )  # fmt: skip
 """Known besides by the line of the track's name above; see :func:`program_of`."""
+IMAGEJ = Program(
+    "ImageJ",
+    lambda names: {"", "x", "y", "slice"} <= names and bool({"area", "mean", "label"} & names),
+    time="slice", position="y", units={"slice": "frame"}, down=True, centre=True,
+)  # fmt: skip
+IMAGEJ_MASS = replace(
+    IMAGEJ, position="ym",
+    recognises=lambda names: {"", "xm", "ym", "slice"} <= names and bool({"area", "mean", "label"} & names),
+)  # fmt: skip
+"""ImageJ's table of results, centroids or centres of mass; its lengths may be calibrated without a word."""
+MANUAL_TRACKING = Program(
+    "Fiji's Manual Tracking",
+    lambda names: (
+        {"x", "y", "pixel value"} <= names and any(re.fullmatch(r"slice n\W*", name) for name in names)
+    ),
+    time="slice n", position="y", particle="track n", units={"slice n": "frame", "x": "px", "y": "px"}, down=True,
+    joined=(r"^(slice|track) n\W+$", r"\1 n"),
+)  # fmt: skip
+MTRACKJ_POINTS = Program(
+    "MTrackJ", lambda names: {"nr", "tid", "pid"} <= names,
+    time="t", position="y", particle="tid", down=True,
+)  # fmt: skip
+MTRACKJ = Program(
+    "MTrackJ", lambda names: False,
+    time="t", position="y", particle="track", units={"t": "frame", "x": "px", "y": "px", "z": "px"}, down=True,
+)  # fmt: skip
+SLEAP = Program(
+    "SLEAP", lambda names: {"frame_idx", "instance.score"} <= names,
+    time="frame_idx", position="y", particle="track", units={"frame_idx": "frame", "x": "px", "y": "px"},
+    down=True, joined=(r"^(.+)\.(x|y|score)$", r"\1/\2"),
+)  # fmt: skip
+DLTDV = Program(
+    "DLTdv", lambda names: any(re.fullmatch(r"pt\d+_cam\d+_[xy]", name) for name in names),
+    time="frame", position="y", units={"frame": "frame", "x": "px", "y": "px"}, either_way=True, counted=True,
+    joined=(r"^(pt\d+_cam\d+)_([xy])$", r"\1/\2"),
+)  # fmt: skip
+IDTRACKER = Program(
+    "idtracker.ai", lambda names: {"x1", "y1"} <= names and bool({"time", "seconds"} & names),
+    time="time", position="y", units={"time": "s", "seconds": "s", "x": "px", "y": "px"}, down=True, centre=True,
+    joined=(r"^([xy])(\d+)$|^seconds$", lambda m: f"{m[2]}/{m[1]}" if m[2] else "time"),
+)  # fmt: skip
+VERNIER = Program(
+    "Logger Pro",
+    lambda names: any(re.match(r"(data set|latest|run \d+|video analysis) ?: ?time", name) for name in names),
+    time="time", position="y",
+    joined=(r"^(data set|latest|run \d+|video analysis) ?: ?(.*?) ?(\(.*\))?$", r"\1/\2 \3"),
+)  # fmt: skip
+VERNIER_TEXT = Program("Logger Pro", lambda names: False, time="t", position="y")
+"""Known by the first line of the text, "Vernier Format"."""
 LAMMPS = Program("LAMMPS", lambda names: False, time="timestep", particle="id", centre=True)
+LAMMPS_LOG = Program("LAMMPS", lambda names: False, time="time", centre=True)
 OPENFOAM = Program("OpenFOAM", lambda names: False, time="time", units={"time": "s"})
-_BY_NAMES = (TRACKMATE, TRACKPY, DEEPLABCUT, KINOVEA)
+_BY_NAMES = (
+    TRACKMATE, TRACKPY, DEEPLABCUT, KINOVEA, IMAGEJ_MASS, IMAGEJ, MANUAL_TRACKING, MTRACKJ_POINTS, SLEAP, DLTDV,
+    IDTRACKER, VERNIER,
+)  # fmt: skip
 
 TIMES = (
-    "time_s",
-    "time",
-    "t",
-    "t_s",
-    "time (s)",
-    "t/t0",
-    "t_star",
-    "frame",
-    "timestep",
-    "step",
-    "seconds",
-    "slice",
+    "time_s", "time", "t", "t_s", "time (s)", "t/t0", "t_star", "frame", "timestep", "step", "seconds", "slice",
     "slice n°",
-)
+    "frame_idx", "frame number", "frame#", "zeit", "temps", "tempo", "tiempo", "czas",
+)  # fmt: skip
 """Names by which a column is guessed to be the time, in a message that says how to name it."""
-POSITIONS = ("gap_m", "gap", "gap/d", "gap_over_d", "y", "z", "height", "h", "pos_y", "pos_z", "position")
+POSITIONS = (
+    "gap_m", "gap", "gap/d", "gap_over_d", "y", "z", "height", "h", "pos_y", "pos_z", "position", "posy", "posz",
+    "p_y", "p_z", "zpos", "ypos", "v_zpos", "v_ypos", "cy", "ym", "y position",
+    "höhe", "hauteur", "altura", "quota", "altezza", "wysokość", "centreofmass_z", "centreofmass_y",
+)  # fmt: skip
 PARTICLES = (
-    "particle",
-    "particle_id",
-    "track_id",
-    "track",
-    "trackid",
-    "track id",
-    "trajectory",
-    "object_id",
-    "id",
-)
+    "particle", "particle_id", "track_id", "track", "trackid", "track id", "trajectory", "object_id", "id",
+)  # fmt: skip
 """Names of a column that tells particles apart, if its numbers repeat."""
 
 
@@ -112,10 +161,15 @@ def program_of(names: Sequence[str]) -> Program | None:
     return next((program for program in _BY_NAMES if program.recognises(lower)), None)
 
 
-def is_tracker(names: Sequence[str], titles: Sequence[Sequence[str]]) -> bool:
-    """Whether a line of nothing but names of tracks, of one word each, stands above ``t  x  y``: Tracker's."""
+def is_tracker(names: Sequence[str], titles: Sequence[Sequence[str]], comments: Sequence[str]) -> bool:
+    """Whether names of tracks and nothing else stand above ``t  x  y``, one word or cut as the columns are:
+    Tracker's; or the mark of its files of several tracks.
+    """
+    if "multi:" in comments:
+        return True
     if not titles:
         return False
     tracks = [cell for cell in titles[-1] if cell]
-    named = 1 <= len(tracks) < len(names) and not any(" " in track for track in tracks)
+    cut = len(titles[-1]) > 1
+    named = 1 <= len(tracks) < len(names) and (cut or not any(" " in track for track in tracks))
     return named and TRACKER.recognises({name.strip().lower() for name in names})

@@ -7,7 +7,7 @@ from itertools import groupby
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
-from restitution.foreign import blocks, programs
+from restitution.foreign import blocks, programs, stopwatch
 from restitution.foreign.file_text import read_lines
 from restitution.foreign.heading import Heading, data_rows, heading_of, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
@@ -118,18 +118,39 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
         return _of_blocks(file, *blocks.lammps(lines, file), programs.LAMMPS)
     if blocks.is_kinovea(lines):
         return _of_blocks(file, *blocks.kinovea(lines), programs.KINOVEA_TEXT)
+    if blocks.is_mtrackj(lines):
+        return _of_blocks(file, *blocks.mtrackj(lines, file), programs.MTRACKJ)
+    if blocks.is_lammps_log(lines):
+        return _of_blocks(file, *blocks.lammps_log(lines, file), programs.LAMMPS_LOG)
+    if blocks.is_openfoam_log(lines):
+        return _of_blocks(file, *blocks.openfoam_log(lines), programs.OPENFOAM)
     layout = layout_of(lines, file, decimal)
     heading = heading_of(layout)
+    program = _program(layout, heading)
+    if program is not None:
+        heading.names = {i: program.renamed(name) for i, name in heading.names.items()}
     names = list(heading.names.values())
-    titles = [row.cells for row in layout.rows[: heading.first_row] if row.line < (heading.line or 0)]
-    program = programs.program_of(names)
-    if program is None and programs.is_tracker(names, titles):
-        program = programs.TRACKER
-    if program is None and layout.vectors:
-        program = programs.OPENFOAM
     rows = _rows(data_rows(layout, heading), list(heading.names), layout, file)
     units = {heading.names[i]: unit for i, unit in heading.units.items() if i in heading.names}
+    if stopwatch.is_stopwatch(names):
+        names, rows = stopwatch.bounces(names, rows, file)
+        return ForeignTable(file, names, rows, {names[1]: "s"}, form="phyphox")
+    if program is not None and program.counted and program.time is not None:
+        names, rows = [program.time, *names], [(line, [f"{n}", *cells]) for n, (line, cells) in enumerate(rows)]
     return ForeignTable(file, names, rows, units, program, heading.line is not None, _form(layout, heading))
+
+
+def _program(layout: Layout, heading: Heading) -> Program | None:
+    """The program that wrote the file, by the names of the columns or what stands above them."""
+    names = list(heading.names.values())
+    if (program := programs.program_of(names)) is not None:
+        return program
+    titles = [row.cells for row in layout.rows[: heading.first_row] if row.line < (heading.line or 0)]
+    if programs.is_tracker(names, titles, [text for _, text in layout.comments]):
+        return programs.TRACKER
+    if layout.lines[0].startswith("Vernier Format"):
+        return programs.VERNIER_TEXT
+    return programs.OPENFOAM if layout.vectors else None
 
 
 def _of_blocks(file: str, names: list[str], rows: list[Row], program: Program) -> ForeignTable:

@@ -10,7 +10,7 @@ import numpy as np
 from restitution import datasets
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
-from restitution.foreign.programs import POSITIONS, TIMES
+from restitution.foreign.asking import overridden, what_is_needed
 from restitution.foreign.settings import Settings, Units
 from restitution.foreign.table import ForeignTable, in_words, lost_rows
 from restitution.tables.reading import read_table
@@ -23,8 +23,6 @@ Quantity = Literal["gap", "velocity"]
 COLUMNS: dict[Quantity, str] = {"gap": "gap_m", "velocity": "velocity_m_s"}
 """The project's own names of the value of a track."""
 _SCHEMAS: dict[Quantity, str] = {"gap": "trajectory", "velocity": "settling"}
-_MOST_NAMED = 30
-"""Columns that a message names."""
 SURE = 0.6
 """Likelihood below which a position counts as lost; the default of DeepLabCut."""
 
@@ -123,6 +121,7 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
     columns = columns_of(table, settings)
     if columns is None:
         raise InputError(what_is_needed(table))
+    notes = overridden(table, settings, columns.time, columns.value)
     settings = _completed(table, settings, columns)
     units = Units.of(settings, conditions)
     time_unit = units.time(settings.time_unit or "s")
@@ -131,13 +130,13 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
         if columns.quantity == "gap"
         else units.speed(settings.unit or "m", time_unit)
     )
-    kept, notes = _without_lost(table, columns)
+    kept, lost = _without_lost(table, columns)
     names = {"time_s": columns.time, COLUMNS[columns.quantity]: columns.value}
     scale = {"time_s": time_unit, COLUMNS[columns.quantity]: unit}
     frames = read_table(kept.text(), datasets.schema(_SCHEMAS[columns.quantity]), names, scale)
     level = _gap_from(frames, settings, conditions, unit, columns.quantity, table.file)
     sized = conditions is not None
-    return ForeignTrack(frames, _in_words(table, settings, columns, level, sized), notes, unit)
+    return ForeignTrack(frames, _in_words(table, settings, columns, level, sized), (*notes, *lost), unit)
 
 
 def _of_particle(table: ForeignTable, settings: Settings) -> ForeignTable:
@@ -186,7 +185,11 @@ def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Set
     elif "px" in completed.unit and completed.pixel is None:
         needed.append(f"--pixel LENGTH of one (0.125mm), for {columns.value} is in pixels")
     if columns.quantity == "gap" and program is not None:
-        if completed.wall is None and program.down:
+        if program.either_way and completed.direction is None:
+            needed.append(
+                f"--direction up or down: whether {columns.value} grows away from the wall or towards it"
+            )
+        if completed.wall is None and (program.down or program.either_way):
             wall = "--wall X" if completed.point else "--wall X and --point centre or lowest"
             needed.append(f"{wall}: {columns.value} of the wall, or --wall rest: where the sphere comes to rest")
         elif completed.point is None and completed.wall != "rest":
@@ -295,25 +298,3 @@ def _in_words(table: ForeignTable, settings: Settings, columns: Columns, level: 
     if settings.particle is not None:
         parts.append(f"particle {settings.particle}")
     return "; ".join(parts)
-
-
-def what_is_needed(table: ForeignTable) -> Defect:
-    """That the columns of a track are not known, with the option that names them, guessed from their names."""
-    time = next((own for name in TIMES if (own := table.column(name))), None)
-    value = next((own for name in POSITIONS if (own := table.column(name)) and own != time), None)
-    header = ", ".join(table.header[:_MOST_NAMED]) + (" ..." if len(table.header) > _MOST_NAMED else "")
-    if not table.named:
-        columns = f"names no columns; they are {header}"
-        example = "--column time_s=1 --column gap_m=2"
-    else:
-        columns = f"the header ({header}) does not tell which columns are time and position"
-        example = f"--column time_s={_quoted(time or 'NAME')} --column gap_m={_quoted(value or 'NAME')}"
-    rule = (
-        f"{columns}: {example} (or velocity_m_s=NAME), with --time-unit s and --unit m or what they are in, and "
-        "--point centre where it is the height of the centre"
-    )
-    return Defect(rule, file=table.file)
-
-
-def _quoted(name: str) -> str:
-    return f"'{name}'" if any(sign in name for sign in " ()*#;&") else name

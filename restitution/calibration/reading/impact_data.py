@@ -20,8 +20,9 @@ from restitution.calibration.reading.observations import Observations, join
 from restitution.calibration.reading.reading import Reading
 from restitution.calibration.reading.track_impacts import from_track, from_track_file
 from restitution.errors import Defect, InputError
+from restitution.foreign.asking import what_is_needed
 from restitution.foreign.table import read_foreign
-from restitution.foreign.track import is_track, what_is_needed
+from restitution.foreign.track import is_track
 from restitution.inputs import read_bytes
 from restitution.tables.reading import examine_table
 from restitution.tables.schema import read_schema

@@ -29,9 +29,10 @@ from restitution.calibration.trajectories.starts import STATED, Start, rate, sta
 from restitution.conditions import Conditions
 from restitution.doubts import Doubt, cleaned, of_track
 from restitution.errors import Defect, InputError
+from restitution.foreign.asking import what_is_needed
 from restitution.foreign.settings import Units
 from restitution.foreign.table import read_foreign
-from restitution.foreign.track import is_track, what_is_needed
+from restitution.foreign.track import is_track
 from restitution.inputs import read_bytes
 from restitution.tracks import Track, begins_on_rebound, contacts
 

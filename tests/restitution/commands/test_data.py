@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 
 from restitution import datasets
@@ -103,3 +105,41 @@ def test_unknown_dataset(capsys):
 def test_a_folder_without_a_package(tmp_path, capsys):
     assert main(["data", "validate", str(tmp_path)]) == 2
     assert "datapackage.json" in capsys.readouterr().err
+
+
+FIELD_CASES = Path(__file__).parents[2] / "field_cases"
+
+
+@pytest.mark.parametrize(
+    ("track", "conditions", "named"),
+    [
+        ("slow_motion_8x.csv", "conditions.toml", "--fps"),
+        ("ordinary.csv", "conditions_cP.toml", "mPa s"),
+        ("distance_fallen.csv", "conditions.toml", "--direction down"),
+        ("mistracked_frames.csv", None, "no flight passes through"),
+    ],
+)
+def test_what_is_valid_but_doubtful_is_said_and_refused_where_asked(track, conditions, named, capsys):
+    command = ["data", "validate", str(FIELD_CASES / track)]
+    command += ["--conditions", str(FIELD_CASES / conditions)] if conditions else []
+    assert main(command) == 0
+    (doubt,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("doubt: ")]
+    assert named in doubt
+    assert main([*command, "--strict"]) == 2
+    assert named in capsys.readouterr().err
+
+
+def test_nothing_is_doubtful_about_an_ordinary_track(capsys):
+    command = ["data", "validate", str(FIELD_CASES / "ordinary.csv"), "--strict"]
+    assert main([*command, "--conditions", str(FIELD_CASES / "conditions.toml")]) == 0
+    assert "doubt" not in capsys.readouterr().out
+
+
+def test_impacts_are_held_against_all_measured_ones(tmp_path, capsys):
+    points = (FIELD_CASES / "stokes_without_the_nine.csv").read_text().split()[1:]
+    path = tmp_path / "impacts.csv"
+    head = "stokes,e_eff,stokes_convention,speed_definition,e_dry\n"
+    path.write_text(head + "".join(f"{point},st,far,0.97\n" for point in points))
+    assert main(["data", "validate", str(path)]) == 0
+    assert "without its 9" in capsys.readouterr().out
+    assert main(["data", "validate", str(path), "--strict"]) == 2

@@ -149,6 +149,25 @@ def test_other_units_names_and_decimal_commas_are_the_same_times(impacts):
 
 
 @pytest.mark.parametrize(
+    ("names", "cells"),
+    [
+        (["Start (s)", "Stop 1 (s)", "Stop 2 (s)", "Stop 3 (s)", "Stop 4 (s)"], "{0},{1},{2},{3},NaN"),
+        (["Bounce 0 (s)", "Height 0 (m)", "Bounce 1 (s)", "Energy 1", "Bounce 2 (s)", "Bounce 3 (s)"],
+         "{0},0.3,{1},0.5,{2},{3}"),
+    ],
+)  # fmt: skip
+def test_a_stopwatch_writes_its_times_side_by_side(impacts, tmp_path, names, cells):
+    times = ("0.1000", "0.3000", "0.4200", "0.4920")
+    (tmp_path / "rows.csv").write_text("bounce,time_s\n" + "".join(f"{n},{t}\n" for n, t in enumerate(times, 1)))
+    (tmp_path / "side.csv").write_text(
+        ",".join(f'"{name}"' for name in names) + "\n" + cells.format(*times) + "\n"
+    )
+    (status, rows, _), (_, side, _) = (impacts(name, "--no-drag") for name in ("rows.csv", "side.csv"))
+    assert status == 0
+    assert rows.splitlines()[1:] == side.splitlines()[1:]
+
+
+@pytest.mark.parametrize(
     ("text", "row"),
     [
         ("bounce,time_s\n1,0.1\n2,0.3\n3,0.25\n4,0.5\n", 4),

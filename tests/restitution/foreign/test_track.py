@@ -179,6 +179,66 @@ FILES = {
     "Kinovea, text": (kinovea_text(), {"unit": "cm", "point": "centre", "particle": "ball"}),
     "Kinovea, clock": (kinovea_clock(), {"unit": "cm", "point": "centre", "time_unit": "0.4s"}),
     "LAMMPS": (lammps(), {"position": "z", "time_unit": "1e-5 s", "unit": "m", "particle": 1}),
+    "TrackMate, calibrated, with columns of counts": (
+        lines(["TRACK_ID,QUALITY,POSITION_X,POSITION_Y,POSITION_T,FRAME,MEAN_INTENSITY_CH1",
+               "Track ID,Quality,X,Y,T,Frame,Mean", ",(quality),(mm),(mm),(sec),,(counts)"],
+              [f"0,7,3,{1e3 * (0.03 - y):.6f},{i / RATE:.9g},{i},99" for i, y in enumerate(CENTRE)]),
+        {"wall": 30.0}),
+    "Tracker, a name of two words": (
+        lines(["mass A;;", "t;x;y"], map(comma, csv(T, 0 * T, CENTRE, sign=";"))),
+        {"unit": "m", "point": "centre"}),
+    "Tracker, several tracks": (
+        lines(["#multi:", ",mass A,,,mass B,,,", "t,x,y,step,x,y,step,"],
+              [f"{i / RATE:.9g},0.1,{y:.9g},{i},0.2,-0.004,{i}," for i, y in enumerate(CENTRE)]),
+        {"unit": "m", "point": "centre", "particle": "mass A"}),
+    "Kinovea, by its own names": (
+        lines(['"Time (ms)","Trajectory 1/X","Trajectory 1/Y"'], csv(1e3 * T, 0 * T, 1e2 * CENTRE)),
+        {"unit": "cm", "point": "centre"}),
+    "ImageJ": (
+        lines([" \tArea\tX\tY\tSlice"],
+              [f"{i + 1}\t2827\t256.1\t{y:.6f}\t{i}" for i, y in enumerate(PIXELS)]), {**IMAGE, "unit": "px"}),
+    "ImageJ, centres of mass": (
+        lines([" ,Label,Area,XM,YM,Slice"], [f"{i + 1},a.tif,28,256.1,{y:.6f},{i}" for i, y in enumerate(PIXELS)]),
+        {**IMAGE, "unit": "px"}),
+    "Fiji's Manual Tracking": (
+        lines([" \tTrack n°\tSlice n°\tX\tY\tDistance\tVelocity\tPixel Value"],
+              [f"{i + 1}\t1\t{i}\t256\t{y:.6f}\t-1\t-1\t120" for i, y in enumerate(PIXELS)]).encode("cp1252"),
+        {**IMAGE, "point": "centre"}),
+    "MTrackJ": (
+        lines(["MTrackJ 1.5.1 Data File", "Assembly 1 FF0000", "Cluster 1 FF0000", "Track 1 FF0000 true"],
+              [*[f"Point {i + 1} 256.0 {y:.6f} 1.0 {i}.0 1.0" for i, y in enumerate(PIXELS)],
+               "Track 2 FF0000 true", "Point 1 5.0 5.0 1.0 0.0 1.0", "End of MTrackJ Data File"]),
+        {**IMAGE, "point": "centre", "particle": 1}),
+    "MTrackJ, points": (
+        lines(["Nr\tTID\tPID\tx [pixel]\ty [pixel]\tt [sec]\tI [val]\tv [pixel/sec]"],
+              [f"{i}\t1\t{i}\t256.0\t{y:.6f}\t{i / RATE:.9g}\t120\tNA" for i, y in enumerate(PIXELS)]),
+        {"pixel": "0.05 mm", "wall": ROW, "point": "centre"}),
+    "SLEAP": (
+        lines(["track,frame_idx,instance.score,ball.x,ball.y,ball.score"],
+              [f"track_0,{i},0.95,256.0,{y:.6f},0.97" for i, y in enumerate(PIXELS)]),
+        {**IMAGE, "point": "centre"}),
+    "DLTdv": (
+        lines(["pt1_cam1_X,pt1_cam1_Y,pt2_cam1_X,pt2_cam1_Y"], [f"256,{y:.6f},NaN,NaN" for y in PIXELS]),
+        {**IMAGE, "point": "centre", "direction": "down", "particle": "pt1_cam1"}),
+    "idtracker.ai": (
+        lines(["seconds,x1,y1,x2,y2"], [f"{t:.9g},256,{y:.6f},3,3" for t, y in zip(T, PIXELS, strict=True)]),
+        {"pixel": "0.05 mm", "wall": ROW, "particle": "1"}),
+    "Logger Pro": (
+        lines(['"Data Set: Time(s)","Data Set: X(m)","Data Set: Y(m)"'], csv(T, 0 * T, CENTRE)),
+        {"point": "centre"}),
+    "Logger Pro, text": (
+        lines(["Vernier Format 2", "drop.cmbl 3/12/2024 10:11:12 .", "Data Set", "Time\tX\tY", "T\tX\tY",
+               "s\tm\tm", ""], csv(T, 0 * T, CENTRE, sign="\t")), {"point": "centre"}),
+    "LAMMPS, a log": (
+        lines(["LAMMPS (2 Aug 2023)", "run 100", "   Step          Time          v_z"],
+              [*csv(range(FRAMES), T, CENTRE, sign="   "), "Loop time of 0.1 on 1 procs for 100 steps"]),
+        {"position": "v_z", "time_unit": "s", "unit": "m"}),
+    "OpenFOAM, a log": (
+        lines(["Build  : v2312"],
+              [f"Time = {t:.9g}\n\nPIMPLE: iteration 1\n    Centre of mass: (0 0 {y + 1:.9g})\n"
+               f"PIMPLE: iteration 2\n    Centre of mass: (0 0 {y:.9g})\nExecutionTime = 3 s  ClockTime = 4 s\n"
+               for t, y in zip(T, CENTRE, strict=True)]),
+        {"position": "centreOfMass_z", "unit": "m", "point": "centre"}),
     "OpenFOAM, a probe": (
         lines(["# Probe 0 (0 0 0)", "#  Probe    0", "#  Time"],
               [f"{t:.9g}   (0 0 {y:.9g})" for t, y in zip(T, CENTRE, strict=True)]),
@@ -314,3 +374,32 @@ def test_how_it_was_read_is_said_in_one_line(tmp_path):
 def test_units_that_are_none(tmp_path, settings, named):
     with pytest.raises(InputError, match=named):
         read(tmp_path, lines(["t,y"], csv(T, GAP)), **METRES | settings)
+
+
+@pytest.mark.parametrize(
+    ("content", "options"),
+    [
+        (
+            lines(["frame,cx,cy"], csv(range(FRAMES), 0 * T, PIXELS)),
+            ["frame", "cy", "--fps", "--wall", "--direction"],
+        ),
+        (lines(["Zeit [ms];Höhe [mm]"], csv(1e3 * T, 1e3 * GAP, sign=";")), ["Zeit [ms]", "Höhe [mm]"]),
+        (lines(["step id x y z"], [f"{i} 1 0.5 0.25 {y:.9g}" for i, y in enumerate(CENTRE)]), ["step", "z"]),
+        (lines(["a,b"], csv(T, GAP)), ["a", "b"]),
+    ],
+)
+def test_columns_are_guessed_in_the_line_that_asks_for_them(tmp_path, content, options):
+    """What moves, under whatever name; a unit that the header states is not asked for."""
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, content)
+    (defect,) = refused.value.defects
+    assert all(option in defect.rule for option in options)
+    assert ("--unit" in defect.rule) == ("[mm]" not in content)
+
+
+def test_a_unit_against_that_of_the_file_is_said(tmp_path):
+    content = lines(["t [ms],y [mm]"], csv(1e3 * T, 1e3 * GAP))
+    found = read(tmp_path, content, time="t [ms]", position="y [mm]", time_unit="s", unit="mm")
+    (note,) = found.notes
+    assert "--time-unit" in note
+    assert "ms" in note

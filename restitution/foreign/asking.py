@@ -1,0 +1,65 @@
+"""What a file of no known program leaves open, asked for in one line that can be typed back."""
+
+from __future__ import annotations
+
+from restitution.errors import Defect
+from restitution.foreign.programs import POSITIONS, TIMES
+from restitution.foreign.settings import Settings
+from restitution.foreign.table import ForeignTable
+
+_MOST_NAMED = 30
+"""Columns that a message names."""
+_FRAMES = ("frame", "slice", "image", "bild")
+
+
+def what_is_needed(table: ForeignTable) -> Defect:
+    """That the columns of a track are not known, with the options that name them, guessed from their names."""
+    time, value = _guessed(table)
+    header = ", ".join(table.header[:_MOST_NAMED]) + (" ..." if len(table.header) > _MOST_NAMED else "")
+    if table.named:
+        columns = f"the header ({header}) does not tell which columns are time and position"
+    else:
+        columns = f"names no columns; they are {header}"
+    example = f"--column time_s={_quoted(time or 'NAME')} --column gap_m={_quoted(value or 'NAME')}"
+    also = []
+    if not table.units.get(time or ""):
+        frames = time is not None and any(word in time.lower() for word in _FRAMES)
+        also.append("--time-unit frame --fps N" if frames else "--time-unit s or what it is in")
+    if not table.units.get(value or ""):
+        also.append(
+            "--unit m or what it is in (rows of an image: --unit px --pixel LENGTH --wall ROW --direction down)"
+        )
+    also.append("--point centre where it is the height of the centre")
+    return Defect(f"{columns}: {example} (or velocity_m_s=NAME), with {', '.join(also)}", file=table.file)
+
+
+def _guessed(table: ForeignTable) -> tuple[str | None, str | None]:
+    """Which columns may be time and position: by their usual names, or the only two that there are."""
+    time = next((own for name in TIMES if (own := table.column(name))), None)
+    value = next(
+        (own for name in POSITIONS if (own := table.column(name)) and own != time and _moves(table, own)), None
+    )
+    if len(table.header) == 2:
+        time = time or next(name for name in table.header if name != value)
+        value = value or next(name for name in table.header if name != time)
+    return time, value
+
+
+def _moves(table: ForeignTable, name: str) -> bool:
+    """Whether a column has more than one value."""
+    k = table.header.index(name)
+    return len({cells[k] for _, cells in table.rows if len(cells) == len(table.header)}) > 1
+
+
+def _quoted(name: str) -> str:
+    return f"'{name}'" if any(sign in name for sign in " ()*#;&") else name
+
+
+def overridden(table: ForeignTable, settings: Settings, time: str, value: str) -> tuple[str, ...]:
+    """A note on each option that stands against the unit that the file itself states."""
+    stated = ((time, "--time-unit", settings.time_unit), (value, "--unit", settings.unit))
+    return tuple(
+        f"{name} is taken in {given}, as {option} says; the file says {own}"
+        for name, option, given in stated
+        if given is not None and (own := table.units.get(name)) is not None and own != given
+    )
