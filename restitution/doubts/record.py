@@ -87,7 +87,7 @@ def _thin(conditions: Conditions) -> list[Doubt]:
         return []
     than = "any gas" if fluid.viscosity < _THINNEST else f"any liquid of {fluid.density:g} kg/m3"
     message = (
-        f"the viscosity, {fluid.viscosity:g} Pa s, is below that of {than}: is it kinematic (write its unit, as in "
-        '"10 cSt"), or in another unit?'
+        f"the viscosity, {fluid.viscosity:g} Pa s, is below that of {than}: is it kinematic (write its unit, as "
+        'in "10 cSt"), or in another unit?'
     )
     return [Doubt("viscosity", message)]
