@@ -10,7 +10,7 @@ from restitution.validation.scorecard import Judged, Scorecard
 from restitution.validation.verdict import Verdict
 
 STATUS = {
-    0: "All rows pass.",
+    0: "Nothing fails: every row passes, or is a known miss that has not moved.",
     1: "A row fails.",
     3: "Something was not evaluated, or there is no baseline for it.",
 }

@@ -63,4 +63,4 @@ def _row(cells: int, depth: Depth) -> Row:
     )  # fmt: skip
 
 
-ROWS = (_row(32, Depth.QUICK), _row(48, Depth.DEFAULT), _row(96, Depth.FULL))
+ROWS = (_row(32, Depth.QUICK), _row(48, Depth.FULL), _row(96, Depth.FULL))
