@@ -184,7 +184,7 @@ def table(found: dict[str, dict[str, dict[str, float | None]]]) -> str:
         truth = [j.row.name for j in judged if j.truth is Verdict.FAIL]
         baseline = [j.row.name for j in judged if j.baseline is Verdict.FAIL]
         depths = [known[name].depth for name in (*truth, *baseline)]
-        at = min(depths, key=list(Depth).index, default="not caught")
+        at = min(depths, key=list(Depth).index, default="not caught" if rows else "not run")
         writer.writerow((change.what, change.file, len(rows), at, " ".join(truth), " ".join(baseline)))
     return text.getvalue()
 
