@@ -232,7 +232,8 @@ def main() -> None:
         for how in ("start_1", "start_2", "own"):
             row = kept[name, how] = one(name, how, c, reference)
             print(line(row), flush=True)
-    if not args.check:
+        if args.check:
+            continue
         rows = [kept[name, how] for name in MODELS for how in ("start_1", "start_2", "own") if (name, how) in kept]
         write_whole(OUT, json.dumps(rows, indent=1) + "\n")
 

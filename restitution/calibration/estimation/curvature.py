@@ -85,7 +85,7 @@ class Curvature:
         symbols = isinstance(model, FormulaModel) or (
             isinstance(model, LawModel) and model.law.formula is not None
         )
-        if likelihood.robust or not symbols:
+        if likelihood.robust or not symbols or likelihood.observations.shared is not None:
             return None
         try:
             return cls(likelihood, extra)

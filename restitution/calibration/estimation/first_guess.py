@@ -48,7 +48,8 @@ def first_guess(likelihood: Likelihood, given: Collection[str] = ()) -> NDArray:
 
     def misfit(x: NDArray) -> NDArray:
         trial = at(x)
-        r = (o.e - likelihood.moments(trial)[0])[seen] * weight
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            r = (o.e - likelihood.moments(trial)[0])[seen] * weight
         priors = [
             (trial[j] - q.mean) / q.sigma if isinstance(q := parameters[j].prior, Normal) else 0.0 for j in mean
         ]
@@ -65,7 +66,8 @@ def first_guess(likelihood: Likelihood, given: Collection[str] = ()) -> NDArray:
     fixed = np.array([parameters[j].name.partition("[")[0] in given for j in mean], bool)
     starts = [np.where(fixed, own, x) for x in (starts if not fixed.all() else [own])]
     starts = [np.clip(x, low + 1e-9, high - 1e-9) for x in starts]
-    starts = [x for x in starts if np.isfinite(likelihood(at(x)))]
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        starts = [x for x in starts if np.isfinite(likelihood(at(x)))]
     if not starts:
         raise InputError(_nowhere(likelihood, values))
     starts.sort(key=lambda x: float(np.sum(misfit(x) ** 2)))

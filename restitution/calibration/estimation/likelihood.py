@@ -36,6 +36,7 @@ from scipy.special import gammaln, log_ndtr, stdtr
 from restitution.calibration.estimation.parameters import Earlier, Normal, Parameter, Placed
 from restitution.calibration.estimation.rebound_model import ReboundModel
 from restitution.calibration.reading.observations import Observations
+from restitution.calibration.reading.shared_errors import Sums, off_diagonal, residual_variance, sums
 
 SCATTER = "scatter"
 """Name of tau among the parameters."""
@@ -47,13 +48,8 @@ _LEAST_VARIANCE = 1e-24
 """Of an impact without any error, so that its weight stays finite."""
 _NODES = np.linspace(-8.0, 8.0, 65)
 """Of the trapezoidal rule over an offset, in standard deviations; exact to rounding for smooth integrands."""
+_LOG_2PI = math.log(2 * math.pi)
 _LOG_T = gammaln((STUDENT + 1) / 2) - gammaln(STUDENT / 2) - 0.5 * np.log(STUDENT * np.pi)
-
-
-def residual_variance(slope: NDArray, e_sigma: NDArray, St_sigma: NDArray, correlation: NDArray) -> NDArray:
-    """Of e - f(St) by the errors of e and St: sigma_e^2 + f'^2 sigma_St^2 - 2 rho f' sigma_e sigma_St."""
-    from_St = slope * St_sigma
-    return e_sigma**2 + from_St**2 - 2 * correlation * from_St * e_sigma
 
 
 class _Sources(NamedTuple):
@@ -79,6 +75,8 @@ class _AtLaw(NamedTuple):
     z: NDArray
     """Limit less f, of the censored ones."""
     z_variance: NDArray
+    g: NDArray | None
+    """Loadings of the measured ones' residuals on the errors of their record, (measured, m)."""
     finite: bool
 
 
@@ -121,14 +119,14 @@ class Likelihood:
             return np.inf
         r, v = law.r, np.maximum(law.r_variance + tau**2, _LEAST_VARIANCE)
         z, v_z = law.z, np.maximum(law.z_variance + tau**2, _LEAST_VARIANCE)
-        if omega == 0:
+        if self.robust and omega > 0:
+            return -sum(self._by_quadrature(s, r, v, z, v_z, omega) for s in range(len(self.source_names)))
+        if self.robust or (law.g is None and omega == 0):
             below = self._log_below(z, v_z).sum() if len(z) else 0.0
             return -float(self._log_density(r, v).sum() + below)
-        if self.robust:
-            return -sum(self._by_quadrature(s, r, v, z, v_z, omega) for s in range(self._n_sources))
-        result = -float(self._log_density(r, v).sum())
-        sources, n = self._kinds, self._n_sources
-        W, S = np.bincount(sources.seen, 1 / v, n), np.bincount(sources.seen, r / v, n)
+        sources, own = self._kinds, self._sums(law, v)
+        W, S = own.W, own.S
+        result = 0.5 * float(own.Q.sum() + self.log_variance * (own.log_det.sum() + len(r) * _LOG_2PI))
         shrink = omega**2 / (1 + omega**2 * W)
         result += float((0.5 * np.log1p(omega**2 * W) - 0.5 * shrink * S**2).sum())
         if not len(z):
@@ -168,9 +166,28 @@ class Likelihood:
         f, slope = self.model(self.law_St, e_dry, {n: x for n, x in given.items() if n not in (SCATTER, OFFSET)})
         variance = residual_variance(slope, o.e_sigma, self.law_St_sigma, o.correlation)
         finite = bool(np.isfinite(f).all() and np.isfinite(variance).all())
-        return _AtLaw(
-            f, slope, variance, (o.e - f)[seen], variance[seen], (o.upper - f)[~seen], variance[~seen], finite
-        )
+        parts = (o.e - f)[seen], variance[seen], (o.upper - f)[~seen], variance[~seen]
+        return _AtLaw(f, slope, variance, *parts, self._loadings(slope), finite)
+
+    def _loadings(self, slope: NDArray) -> NDArray | None:
+        """Of the residuals of the measured impacts; None where no errors are shared."""
+        shared = self.observations.shared
+        if shared is None or self.robust:
+            return None
+        return (shared[:, 1] - (slope * self.ratio)[:, None] * shared[:, 0])[self._seen]
+
+    def _sums(self, law: _AtLaw, v: NDArray) -> Sums:
+        """Of each source without its offset; ``v`` are the variances of the measured impacts."""
+        seen, n, r = self._kinds.seen, len(self.source_names), law.r
+        if law.g is not None:
+            return sums(law.g, v, r, seen, n)
+        Q, log_det = np.bincount(seen, r**2 / v, n), np.bincount(seen, np.log(v), n)
+        return Sums(Q, log_det, np.bincount(seen, 1 / v, n), np.bincount(seen, r / v, n))
+
+    def between(self, values: NDArray) -> NDArray | None:
+        """Covariances between residuals of different measured impacts, (measured, measured), no offsets."""
+        g = self._at_law(np.asarray(values, float)).g
+        return None if g is None else off_diagonal(g, self._kinds.seen)
 
     def deviations(self, values: NDArray) -> tuple[float, float]:
         """Standard deviations of the scatter and of the offsets."""
@@ -179,15 +196,11 @@ class Likelihood:
 
     def offsets(self, values: NDArray) -> dict[str, tuple[float, float]]:
         """Offset of each source, as far as the data tell: conditional mean and standard deviation."""
-        f, variance, omega = self.moments(np.asarray(values, float))
-        seen, n = self._seen, self._n_sources
-        w, r = 1 / variance[seen], (self.observations.e - f)[seen]
-        W, S = np.bincount(self.sources[seen], w, n), np.bincount(self.sources[seen], w * r, n)
-        shrink = omega**2 / (1 + omega**2 * W)
-        return {
-            name: (float(mean), float(sigma))
-            for name, mean, sigma in zip(self.source_names, shrink * S, np.sqrt(shrink), strict=True)
-        }
+        law, (tau, omega) = self._at_law(np.asarray(values, float)), self.deviations(values)
+        own = self._sums(law, np.maximum(law.r_variance + tau**2, _LEAST_VARIANCE))
+        shrink = omega**2 / (1 + omega**2 * own.W)
+        known = zip((shrink * own.S).tolist(), np.sqrt(shrink).tolist(), strict=True)
+        return dict(zip(self.source_names, known, strict=True))
 
     def jacobian(self, values: NDArray) -> NDArray:
         """D f_i / d parameter by central differences, shape (n, parameters); zero for standard deviations."""
@@ -218,10 +231,6 @@ class Likelihood:
         return self.observations.groups("source")[1]
 
     @cached_property
-    def _n_sources(self) -> int:
-        return len(self.source_names)
-
-    @cached_property
     def _seen(self) -> NDArray:
         return ~self.observations.censored
 
@@ -243,7 +252,7 @@ class Likelihood:
     @cached_property
     def _kinds(self) -> _Sources:
         seen, censored = self.sources[self._seen], self.sources[~self._seen]
-        several = np.bincount(censored, minlength=self._n_sources)[censored] > 1
+        several = np.bincount(censored, minlength=len(self.source_names))[censored] > 1
         return _Sources(seen, censored, np.flatnonzero(~several), tuple(dict.fromkeys(censored[several].tolist())))
 
     @cached_property

@@ -86,7 +86,8 @@ def maximise(
         if not all(map(math.isfinite, given)):
             return HUGE
         values = np.array([out(v) for out, v in zip(outward, given, strict=True)])
-        total = negative_log(values) - (log_prior(parameters, values, every=False) if measured else 0.0)
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            total = negative_log(values) - (log_prior(parameters, values, every=False) if measured else 0.0)
         return total if total < HUGE else HUGE
 
     first = np.array([p.inward(v) for p, v in zip(parameters, start, strict=True)])

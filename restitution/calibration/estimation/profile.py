@@ -18,7 +18,7 @@ from restitution.calibration.estimation.curvature import Curvature
 from restitution.calibration.estimation.maximum import Function, Maximum
 from restitution.calibration.estimation.parameters import log_prior
 
-NARROW = 1e4
+NARROW = 100.0
 """Condition of the scaled curvature from which on intervals are made here."""
 _NEWTON = 200
 _SETTLED = 1e-6

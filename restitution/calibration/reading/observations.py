@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.calibration.reading.shared_errors import joined
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.conditions import Conditions
 from restitution.doubts import Doubt
@@ -62,6 +63,8 @@ class Observations(Showing):
     notes: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
     """About the records that they come from."""
+    shared: NDArray | None = None
+    """Loadings (n, 2, m) of the errors of St and of e on those of their record (:mod:`.shared_errors`)."""
     simulated: bool = False
     """Whether they come from a simulation; such ones are never joined with measured ones."""
 
@@ -221,8 +224,9 @@ def _converted(o: Observations, key: str) -> Observations:
         rule = f"{error}: --conditions FILE, or columns of fluid and sphere"
         raise InputError(Defect(rule, file=file, field="stokes_convention", value=o.convention)) from None
     note = f"{file or 'impacts'}: Stokes numbers converted from {o.convention} to {key}"
+    shared = o.shared if o.shared is None else o.shared * np.stack([ratio, np.ones(len(o))], axis=1)[:, :, None]
     return dataclasses.replace(
-        o, St=o.St * ratio, St_sigma=o.St_sigma * ratio, convention=key, notes=(*o.notes, note)
+        o, St=o.St * ratio, St_sigma=o.St_sigma * ratio, convention=key, shared=shared, notes=(*o.notes, note)
     )
 
 
@@ -253,11 +257,12 @@ def join(parts: list[Observations]) -> Observations:
     arrays = {
         f.name: np.concatenate([getattr(p, f.name) for p in parts])
         for f in dataclasses.fields(first)
-        if isinstance(getattr(first, f.name), np.ndarray)
+        if isinstance(getattr(first, f.name), np.ndarray) and f.name != "shared"
     }
     return dataclasses.replace(
         first,
         **arrays,
+        shared=joined([(len(p), p.shared) for p in parts]),
         labels=labels,
         conditions=tuple(c for p in parts for c in p.conditions),
         places=tuple(x for p in parts for x in p.places),

@@ -183,7 +183,7 @@ class FitResult(Showing, Record):
         return json.dumps(self.model_dump(mode="json"), indent=1, allow_nan=False) + "\n"
 
 
-MOST_DRAWS = 1000
+MOST_DRAWS = 4000
 """Draws of a chain that are kept in a record."""
 
 

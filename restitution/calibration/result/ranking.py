@@ -207,11 +207,14 @@ def predictive(fit: Fit, whole: Likelihood, out: NDArray) -> float:
     inside = ~out & ~o.censored
     same = (whole.sources[:, None] == whole.sources).astype(float)
     mean, cov = f.copy(), np.diag(variance) + omega**2 * same
-    if omega > 0 and inside.any():
-        gain = np.linalg.solve(cov[np.ix_(inside, inside)], (omega**2 * same)[np.ix_(inside, out)]).T
+    if (between := whole.between(values)) is not None:
+        measured = np.flatnonzero(~o.censored)
+        cov[np.ix_(measured, measured)] += between
+    if (omega > 0 or between is not None) and inside.any():
+        gain = np.linalg.solve(cov[np.ix_(inside, inside)], cov[np.ix_(inside, out)]).T
         mean[out] += gain @ (o.e - f)[inside]
         J_out = J[out] - gain @ J[inside]
-        cov_out = cov[np.ix_(out, out)] - gain @ (omega**2 * same)[np.ix_(inside, out)]
+        cov_out = cov[np.ix_(out, out)] - gain @ cov[np.ix_(inside, out)]
     else:
         J_out, cov_out = J[out], cov[np.ix_(out, out)]
     cov_out = cov_out + J_out @ C @ J_out.T

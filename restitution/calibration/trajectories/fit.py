@@ -12,6 +12,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from restitution.bounce import Closures
 from restitution.calibration.estimation.fitting import Fit, estimate
 from restitution.calibration.estimation.plan import Plan
@@ -19,6 +22,7 @@ from restitution.calibration.estimation.posterior import Posterior
 from restitution.calibration.reading.impact_checks import check_physical
 from restitution.calibration.reading.observations import Observations, join
 from restitution.calibration.reading.reading import Reading
+from restitution.calibration.reading.shared_errors import joined, loadings
 from restitution.calibration.reading.track_impacts import from_track
 from restitution.calibration.result.fit_result import FitResult, TrajectoryRecord, result_of
 from restitution.calibration.result.fitted_law import FittedLaw
@@ -27,7 +31,7 @@ from restitution.calibration.trajectories.recordings import Recording
 from restitution.calibration.trajectories.whole_trajectories import WholeTrajectory, distance_d, whole_trajectories
 from restitution.doubts import Doubt
 from restitution.errors import Defect, InputError
-from restitution.stokes import H_FILM, Speed, film_edge
+from restitution.stokes import H_FILM, Speed, convention, film_edge
 
 FEW = 2
 """Rebounds up to which laws are not ranked: without one of them nothing is left that tells their scatter."""
@@ -111,7 +115,24 @@ def observations(trajectories: Sequence[WholeTrajectory], how: Reading) -> Obser
         files={name: r.digest for name, r in records.items()},
         notes=tuple(note for r in records.values() for note in r.notes),
     )
-    return check_physical(o, how)
+    return check_physical(replace(o, shared=_shared(trajectories, o)), how)
+
+
+def _shared(trajectories: Sequence[WholeTrajectory], o: Observations) -> NDArray | None:
+    """Loadings of the errors of St and e of all bounces of a record on its independent ones."""
+    parts: list[tuple[int, NDArray | None]] = []
+    for t in trajectories:
+        speeds, _, C = t.impact_moments()
+        n, root = len(speeds), loadings(C)
+        per_speed = convention(o.convention).per_speed(t.recording.conditions)
+        own = np.stack([per_speed * root[:n], root[n:]], axis=1)  # (bounces, 2, 2 bounces)
+        here = [i for i, source in enumerate(o.labels["source"]) if source == t.recording.name]
+        block = np.zeros((len(here), 2, 2 * n))
+        for row, i in enumerate(here):
+            if np.isfinite(o.e[i]):
+                block[row] = own[o.places[i][1] - 1]
+        parts.append((len(here), block))
+    return joined(parts)
 
 
 def slope_observations(records: Sequence[Recording], how: Reading) -> Observations:

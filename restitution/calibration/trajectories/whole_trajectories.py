@@ -4,12 +4,10 @@ The restitution of each bounce of a record is estimated with the start, the cloc
 record (:mod:`.likelihood`), under gravity, drag, added mass, wall, history force and, if wanted, the
 wake of the approach; no rebound law takes part. Impact speed and e are those of the motion outside the film,
 carried to the wall: the ``far`` definition. A law is then fitted to them, with their errors, as to any impacts
-(:mod:`.estimation.fitting`). What a record says of its e being nearly normal, that is the likelihood of the
-frames,
+(:mod:`.estimation.fitting`), those of different bounces of a record with their correlations. What a record says of
+its e being nearly normal, that is the likelihood of the frames,
 
-    p(frames | theta, scatter) = int p(frames | e) p(e | law, theta, scatter) de,
-
-but for the correlation between the errors of different bounces of a record, which the fit leaves out.
+    p(frames | theta, scatter) = int p(frames | e) p(e | law, theta, scatter) de.
 
 The trajectories are those of quadratic maps (:mod:`.flight_map`), moved until the estimate lies within them; what
 they differ by from a direct integration stands in the result.

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.estimation.likelihood import residual_variance
 from restitution.calibration.reading.observations import correlation_of_independent_speeds
+from restitution.calibration.reading.shared_errors import residual_variance
 from restitution.laws import ReboundLaw
 from restitution.stokes import StokesNumber
 

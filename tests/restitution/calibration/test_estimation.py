@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from restitution.calibration import estimate, model_of, result_of
 from restitution.calibration.estimation.curvature import Curvature
@@ -11,7 +12,7 @@ from restitution.calibration.estimation.small_sample import Restriction
 from restitution.calibration.reading.observations import join
 from restitution.calibration.result.chained import earlier_of
 from restitution.errors import InputError
-from tests.fits import draw, observations, plan
+from tests.fits import E_DRY, draw, observations, plan
 
 TRUTHS = {"K": 17.0, "e_dry": 0.9, "scatter": 0.025, "source_offset": 0.02, "a": 30.0, "n": 1.0}
 
@@ -171,3 +172,36 @@ def test_yorks_line_by_option():
 def test_the_same_fit_is_the_same_to_the_last_digit():
     o = draw(12, np.random.default_rng(9), scatter=0.03, offset=0.03)
     assert result_of(estimate(plan(), o)).to_json() == result_of(estimate(plan(), o)).to_json()
+
+
+def with_shared_errors(n=8):
+    """Impacts of two records whose errors of St and e have three common causes in each."""
+    rng = np.random.default_rng(0)
+    o = draw(n, rng, scatter=0.01, offset=0.03)
+    shared = np.stack([0.5 * rng.standard_normal((n, 3)), 0.02 * rng.standard_normal((n, 3))], axis=1)
+    St_sigma, e_sigma = np.sqrt((shared**2).sum(axis=2)).T
+    correlation = (shared[:, 0] * shared[:, 1]).sum(axis=1) / (St_sigma * e_sigma)
+    return dataclasses.replace(o, shared=shared, St_sigma=St_sigma, e_sigma=e_sigma, correlation=correlation)
+
+
+def test_errors_that_a_record_shares_are_those_of_one_dense_normal():
+    o, (K, tau, omega) = with_shared_errors(), (17.0, 0.02, 0.03)
+    likelihood = plan(e_dry=E_DRY).likelihood(o)
+    f, slope = likelihood.model(o.St, E_DRY, {"K": K})
+    g = o.shared[:, 1] - slope[:, None] * o.shared[:, 0]
+    same = likelihood.sources[:, None] == likelihood.sources
+    V = (g @ g.T + omega**2) * same + tau**2 * np.eye(len(o))
+    expected = stats.multivariate_normal(f, V).logpdf(o.e)
+    assert -likelihood(np.array([K, tau, omega])) == pytest.approx(expected, abs=1e-9)
+
+
+def test_shared_errors_stay_with_their_impacts():
+    """Joined with impacts that share none, taken in part, and fitted: another K than without them."""
+    o = with_shared_errors()
+    both = join([o, draw(5, np.random.default_rng(1))])
+    assert both.shared.shape == (13, 2, 3)
+    assert not both.shared[8:].any()
+    np.testing.assert_array_equal(both.take(np.array([7, 2])).shared, o.shared[[7, 2]])
+    alone = dataclasses.replace(o, shared=None)
+    with_them, without = (estimate(plan(e_dry=E_DRY), x, intervals=False).maximum for x in (o, alone))
+    assert abs(with_them.values[0] - without.values[0]) > 0.05 * without.sigma[0]
