@@ -20,6 +20,8 @@ from restitution.errors import Defect, InputError
 LEVELS = (0.68, 0.95)
 HUGE = 1e12
 """Stands for an infinite -ln L in the search, which needs numbers."""
+_SILENT = -1
+"""Level of MINUIT's own messages; at 0 it writes of matrices that it mends."""
 Function = Callable[[NDArray], float]
 
 
@@ -98,7 +100,7 @@ def maximise(
         raise InputError(f"the likelihood is not finite at the start ({at}): give starts or bounds where it is")
     minuit = Minuit(function, first, name=[p.name for p in parameters])
     minuit.errordef = Minuit.LIKELIHOOD
-    minuit.print_level = 0
+    minuit.print_level = _SILENT
     for j, (p, x) in enumerate(zip(parameters, first, strict=True)):
         minuit.limits[p.name] = p.limits
         known = steps is not None and np.isfinite(steps[j]) and steps[j] > 0
@@ -176,6 +178,7 @@ def _search(minuit, p: Parameter, rise: float, side: int) -> float | None:
     lowest, best = minuit.fval, minuit.values[p.name]
     profile = Minuit(minuit.fcn, np.array(minuit.values), name=minuit.parameters)
     profile.errordef = Minuit.LIKELIHOOD
+    profile.print_level = _SILENT
     profile.limits = minuit.limits
     profile.fixed[p.name] = True
 

@@ -11,6 +11,7 @@ from restitution.calibration.estimation.curvature import Curvature
 from restitution.calibration.estimation.small_sample import Restriction
 from restitution.calibration.reading.observations import join
 from restitution.calibration.result.chained import earlier_of
+from restitution.calibration.trajectories.fit import values_of
 from restitution.errors import InputError
 from tests.fits import E_DRY, draw, observations, plan
 
@@ -205,3 +206,14 @@ def test_shared_errors_stay_with_their_impacts():
     alone = dataclasses.replace(o, shared=None)
     with_them, without = (estimate(plan(e_dry=E_DRY), x, intervals=False).maximum for x in (o, alone))
     assert abs(with_them.values[0] - without.values[0]) > 0.05 * without.sigma[0]
+
+
+def test_a_record_flies_with_its_own_level_of_a_separate_parameter():
+    """K of each record; of one without an impact of its own nothing is known."""
+    o = draw(12, np.random.default_rng(6), scatter=0.02, offset=0.02)
+    fit = estimate(plan(e_dry=E_DRY, separate={"K": "source"}, offsets=False), o, intervals=False)
+    names = [p.name for p in fit.maximum.parameters]
+    for record in ("lab 0", "lab 1"):
+        assert values_of(fit, record)["K"] == fit.maximum.values[names.index(f"K[{record}]")]
+    with pytest.raises(InputError, match="lab 2"):
+        values_of(fit, "lab 2")
