@@ -222,7 +222,7 @@ def sharpened(best: Maximum, negative_log: Function, curvature: Curvature | None
     def total(values: NDArray) -> float:
         return negative_log(values) - log_prior(best.parameters, values, every=False)
 
-    values, lowest, condition, C = best.values.copy(), total(best.values), None, None
+    values, lowest, condition, C, left = best.values.copy(), total(best.values), None, None, 0.0
     low, high = np.array([p.bounds for p in best.parameters]).T
     even = np.array([p.scale == "even" for p in best.parameters], bool)
     for _ in range(_NEWTON):
@@ -241,8 +241,8 @@ def sharpened(best: Maximum, negative_log: Function, curvature: Curvature | None
         C = inverse * np.outer(scale, scale)
         step = np.zeros(len(values))
         step[inside] = -scale * (inverse @ (scale * d.gradient[inside]))
-        own = np.abs(step[inside]) / np.sqrt(np.diag(C))
-        if np.max(own) < _SETTLED:
+        left = float(np.max(np.abs(step[inside]) / np.sqrt(np.diag(C))))
+        if left < _SETTLED:
             break
         for part in (1.0, 0.5, 0.25, 0.125):
             new = np.clip(np.where(even, np.abs(values + part * step), values + part * step), low, high)
@@ -252,8 +252,8 @@ def sharpened(best: Maximum, negative_log: Function, curvature: Curvature | None
         else:
             break
     if not inside.all() or C is None:
-        return replace(best, values=values, negative_log=lowest, condition=condition)
-    return replace(best, values=values, negative_log=lowest, covariance=C, condition=condition)
+        C = best.covariance
+    return replace(best, values=values, negative_log=lowest, covariance=C, condition=condition, unsettled=left)
 
 
 def _of_offsets(

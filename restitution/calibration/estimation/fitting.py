@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.estimation.curvature import Curvature, sharpened
+from restitution.calibration.estimation.curvature import Curvature
 from restitution.calibration.estimation.first_guess import first_guess
 from restitution.calibration.estimation.identifiability import check_bounds, check_flat, of_estimate
 from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
 from restitution.calibration.estimation.maximum import LEVELS, Maximum, Thresholds, maximise
 from restitution.calibration.estimation.plan import Plan
-from restitution.calibration.estimation.profile import NARROW, profiled
+from restitution.calibration.estimation.profile import NARROW, profiled, settled
 from restitution.calibration.estimation.small_sample import Restriction, threshold
 from restitution.calibration.reading.impact_checks import doubts_about
 from restitution.calibration.reading.observations import Observations
@@ -99,9 +99,9 @@ def estimate(
     freedom = np.full(len(parameters), np.inf)
     if not intervals:
         best = maximise(function, parameters, start, covariance=covariance, steps=steps)
-        best = sharpened(best, function, curvature) if covariance else best
+        best = settled(best, function, curvature) if covariance else best
         return Fit(plan, likelihood, best, freedom, restriction is not None, ())
-    best = sharpened(maximise(function, parameters, start), function, curvature)
+    best = settled(maximise(function, parameters, start), function, curvature)
     mean = np.array([p.mean for p in parameters], bool)
     check_bounds(best)
     if restriction is not None:
@@ -116,7 +116,7 @@ def estimate(
     else:
         ended = maximise(function, parameters, best.values, Thresholds(rises), steps=best.sigma)
         if ended.negative_log < best.negative_log - _LOWER:  # a better maximum on the way along the profile
-            best = sharpened(ended, function, curvature)
+            best = settled(ended, function, curvature)
         else:
             best = replace(best, intervals=ended.intervals, open_ends=ended.open_ends, calls=ended.calls)
     return Fit(plan, likelihood, best, freedom, restriction is not None, _notes(likelihood, best))

@@ -26,6 +26,8 @@ from restitution.errors import Defect, InputError
 
 APART = 2.0
 """Factor between standard error and half the interval of 68 % from which on they contradict each other."""
+_FAR_OFF = 0.05
+"""Standard errors from the maximum that are too many."""
 CONDITION = 1e10
 """Ratio of eigenvalues from which on errors and intervals are not believed."""
 
@@ -102,6 +104,12 @@ def of_estimate(best: Maximum, freedom: NDArray) -> Iterator[Doubt]:
             "curvature",
             f"the parameters are nearly exchangeable (condition {best.condition:.1e} of the curvature): errors "
             "and intervals may be wrong; fix one, or give it a prior",
+        )
+    if best.unsettled > _FAR_OFF:
+        yield Doubt(
+            "maximum",
+            f"the search stopped some {best.unsettled:.2g} standard errors from the maximum: rounding hides "
+            "the rest of the way; fix a parameter, or give one a prior",
         )
     for j, p in enumerate(best.parameters):
         if not p.mean:

@@ -40,6 +40,8 @@ class Maximum:
     """True where an interval ends at a bound of the parameter, not because the likelihood has fallen."""
     condition: float | None = None
     """Of the curvature scaled to a unit diagonal, greatest over least eigenvalue; None where it is not exact."""
+    unsettled: float = 0.0
+    """The step that Newton's method would still make, in standard errors, where it leads no lower any more."""
 
     @property
     def sigma(self) -> NDArray:

@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from restitution.calibration.estimation.curvature import Curvature
+from restitution.calibration.estimation.curvature import Curvature, sharpened
 from restitution.calibration.estimation.maximum import Function, Maximum
 from restitution.calibration.estimation.parameters import log_prior
 
 NARROW = 100.0
 """Condition of the scaled curvature from which on intervals are made here."""
+SHORT = 1e-3
+"""Step to the maximum, in standard errors, that is still to be made where a search has stopped short of it."""
 _NEWTON = 200
 _SETTLED = 1e-6
 """Newton's decrement, in units of -ln L, below which the others have followed."""
@@ -44,6 +46,15 @@ def profiled(
         intervals[level] = np.array([[end for end, _ in pair] for pair in sides])
         open_ends[level] = np.array([[is_open for _, is_open in pair] for pair in sides])
     return replace(best, intervals=intervals, open_ends=open_ends)
+
+
+def settled(best: Maximum, negative_log: Function, curvature: Curvature | None) -> Maximum:
+    """The maximum of a search that stopped short of it in a narrow valley, by damped steps and then exact ones."""
+    best = sharpened(best, negative_log, curvature)
+    if curvature is None or best.unsettled < SHORT:
+        return best
+    values = _Profile(best, negative_log, curvature).follow(best.values, None)
+    return sharpened(replace(best, values=values), negative_log, curvature)
 
 
 class _Profile:
@@ -89,8 +100,8 @@ class _Profile:
             inner, way = way, _GROWTH * way
         return np.nan, True
 
-    def follow(self, values: NDArray, j: int) -> NDArray:
-        """The others where -ln L is least, parameter j held."""
+    def follow(self, values: NDArray, j: int | None) -> NDArray:
+        """Where -ln L is least, parameter j held."""
         value, damping, d = self.total(values), 0.0, None
         for _ in range(_NEWTON):
             d = d or self.curvature(values)
@@ -98,7 +109,8 @@ class _Profile:
                 break
             pushed = ((values <= self.low) & (d.gradient > 0)) | ((values >= self.high) & (d.gradient < 0))
             free = ~pushed
-            free[j] = False
+            if j is not None:
+                free[j] = False
             if not free.any():
                 break
             g, H = d.gradient[free], d.hessian[np.ix_(free, free)]
