@@ -24,7 +24,7 @@ def of_table(
 ) -> list[Doubt]:
     """Doubts about a table without defects; ``scale`` is what one of its gaps is in m.
 
-    Without conditions a track is asked only for frames that no flight passes through.
+    Without conditions a track is asked only for its frames and whether it moves.
     """
     from restitution.tables.reading import read_table
 
@@ -38,15 +38,12 @@ def of_track_table(
     table: pd.DataFrame, conditions: Conditions | None, where: str, sigma: float | None = None
 ) -> list[Doubt]:
     """Doubts about a track in SI; too few frames for an impact are no reason for one."""
-    from restitution.doubts import cleaned, of_track
-    from restitution.tracks import MINIMUM_FRAMES, Track, contacts
+    from restitution.doubts import of_record
+    from restitution.tracks import MINIMUM_FRAMES, Track
 
     if len(table) < MINIMUM_FRAMES:
         return []
-    clean = cleaned(Track.from_table(table, sigma), where)
-    if conditions is None:
-        return list(clean.doubts)
-    return [*clean.doubts, *of_track(clean.track, contacts(clean.track), conditions, where)]
+    return of_record(Track.from_table(table, sigma), conditions, where)
 
 
 def of_impact_table(path: Path, columns: Mapping[str, str]) -> list[Doubt]:

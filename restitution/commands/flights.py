@@ -91,7 +91,7 @@ def _show(impacts: FlightImpacts, by_drag: bool) -> None:
         return f"{value:.{digits}f}" + ("" if math.isnan(error) else f" +- {error:.{digits}f}")
 
     rows = []
-    for r, e_free in zip(impacts.rows, impacts.free, strict=True):
+    for r, e_free, (low, high) in zip(impacts.rows, impacts.free, impacts.forces, strict=True):
         rows.append(
             (
                 str(r["impact"]),
@@ -99,10 +99,14 @@ def _show(impacts: FlightImpacts, by_drag: bool) -> None:
                 with_error(r["rebound_speed_m_s"], r["rebound_speed_sigma_m_s"], 4),
                 with_error(r.get("stokes", math.nan), r.get("stokes_sigma", math.nan), 1),
                 with_error(r["e_eff"], r["e_eff_sigma"], 3),
-                *([f"{e_free:.3f}"] if by_drag else []),
+                *([f"{low:.3f} to {high:.3f}", f"{e_free:.3f}"] if by_drag else []),
             )
         )
-    how = "point particle with drag" if by_drag else "in the limit of no drag"
+    how = (
+        "point particle with drag and added mass, with and without history force, wake and the wall's resistance"
+        if by_drag
+        else "in the limit of no drag"
+    )
     show(f"speed: far, {how}")
     headings = ("impact", "impact speed m/s", "rebound speed m/s", "St", "e_eff")
-    show_rows((*headings, *(["e without drag"] if by_drag else [])), rows, right=("impact",))
+    show_rows((*headings, *(["e by forces", "e without drag"] if by_drag else [])), rows, right=("impact",))

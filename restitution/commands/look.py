@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> None:
     """Say how the track was read, write its picture, and open it."""
     import tempfile
 
-    from restitution.doubts import cleaned
+    from restitution.doubts import of_record
     from restitution.errors import Defect, InputError
     from restitution.files import check_folder, write_folder, write_whole
     from restitution.report.look import Told, pages, view_of
@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> None:
         rule = "has bounces alone, no track to look at: restitution impacts takes it"
         raise InputError(Defect(rule, file=args.track))
     read = tracked.read(args, without_conditions=True)
-    impacts, notes, doubts = None, [*read.notes], list(cleaned(read.track).doubts)
+    impacts, notes, doubts = None, [*read.notes], of_record(read.track, None)
     if read.conditions is None:
         notes.append("fluid and sphere are not stated (--conditions FILE): no speeds, no St, no e_eff")
     else:

@@ -1,15 +1,19 @@
 """What a record is held against before its numbers are believed.
 
 Input that cannot be used is refused; input that can be used but contradicts what every such record obeys gives its
-result and a :class:`~.doubt.Doubt` that names the likely mistake. Read :mod:`.doubt`, :mod:`.mistracked`
-(frames that no flight passes through), :mod:`.falls` (what the flights of a track say of gravity),
-:mod:`.record` (what no record has), :mod:`.motion` (a track against its conditions), :mod:`.film_loss` (impacts
-against all measured ones).
+result and a :class:`~.doubt.Doubt` that names the likely mistake. Read
+:mod:`.doubt`; :mod:`.mistracked` (frames that no flight passes through), :mod:`.clock` (frames repeated,
+renumbered, smoothed), :mod:`.place` (the coordinate, the wall, holes), :mod:`.stated` (conditions by themselves);
+:mod:`.falls` (what the flights of a track say of gravity), :mod:`.pace` (clock, fluid and sphere by it),
+:mod:`.motion` (a track against its conditions), :mod:`.record` (all of a record);
+:mod:`.film_loss` (impacts against all measured ones).
 """
 
 from restitution.doubts.doubt import Doubt, refuse
 from restitution.doubts.film_loss import of_impacts
 from restitution.doubts.mistracked import Cleaned, cleaned
 from restitution.doubts.motion import of_track
+from restitution.doubts.place import holes
+from restitution.doubts.record import of_record
 
-__all__ = ["Cleaned", "Doubt", "cleaned", "of_impacts", "of_track", "refuse"]
+__all__ = ["Cleaned", "Doubt", "cleaned", "holes", "of_impacts", "of_record", "of_track", "refuse"]

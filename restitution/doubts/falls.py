@@ -99,10 +99,37 @@ def _fall(t: NDArray, y: NDArray, track: Track, order: int) -> Fall:
     inverse = np.linalg.pinv(design)
     c = inverse @ y
     scatter = float(np.sqrt(np.sum((y - design @ c) ** 2) / max(len(t) - order - 1, 1)))
-    error = max(track.sigma, scatter) * float(np.linalg.norm(inverse[order]))
+    error = max(track.sigma, scatter) * float(np.linalg.norm(inverse[order])) * _together(y - design @ c)
     if order == 2:
         return Fall(-2 * c[2] / span**2, 2 * error / span**2, abs(c[1]) / span)
     return Fall(-c[1] / span, error / span, float(np.mean(np.abs(y))))
+
+
+def _together(rest: NDArray) -> float:
+    """By how much errors that neighbours share, as those of a pixel grid, make an error larger."""
+    whole = float(rest @ rest)
+    shared = float(rest[1:] @ rest[:-1]) / whole if whole > 0 else 0.0
+    shared = min(max(shared, 0.0), 0.95)
+    return float(np.sqrt((1 + shared) / (1 - shared)))
+
+
+def begin_of_approach(track: Track, contacts: Contacts, terminal: float) -> Fall | None:
+    """The acceleration of the first flight while it is slow, below half of ``terminal`` (m/s)."""
+    first = flights(track, contacts)[0]
+    t, y = track.time_s[first.start : first.stop], track.value[first.start : first.stop]
+    if len(t) < 3 * _LEAST:
+        return None
+    if track.quantity == "velocity":
+        slow = np.flatnonzero(np.abs(y) > 0.5 * terminal)
+    else:
+        begin = int(np.argmax(y))
+        t, y = t[begin:], y[begin:]
+        s = max(len(t) // _PIECES, 1)
+        slow = np.flatnonzero(np.abs(y[s:] - y[:-s]) > 0.5 * terminal * (t[s:] - t[:-s]))
+    end = int(slow[0]) if len(slow) else len(t)
+    if end < 2 * _LEAST:
+        return None
+    return _fall(t[:end], y[:end], track, 2 if track.quantity == "gap" else 1)
 
 
 def fastest(track: Track, contacts: Contacts) -> float:

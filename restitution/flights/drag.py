@@ -3,8 +3,8 @@
 The equation of motion is that of :mod:`restitution.bounce`, e_eff standing for the film, so speeds are ``far``.
 The contacts are solved for one after the other, so that each flight meets the history of all before it. Where
 neither a release nor a quoted speed tells the approach to the first contact, its speed is taken to be what the
-first rebound comes from with a restitution that is ``first`` times that of the second contact; whether it was
-steady or a fall from rest is then open too (``fallen``).
+first rebound comes from with the restitution e_1 = e_2 + ``first`` (1 - e_2), e_2 being that of the second
+contact; whether it was steady or a fall from rest is then open too (``fallen``).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def speeds(
     values: NDArray,
     conditions: Conditions,
     quoted: float | None = None,
-    first: float = 1.0,
+    first: float = 0.0,
     fallen: bool = False,
     closures: Closures | None = None,
 ) -> tuple[NDArray, NDArray]:
@@ -46,11 +46,11 @@ def speeds(
     kind, numbers, values : as in :func:`restitution.flights.free.speeds`.
     conditions : fluid and sphere, heavier than the fluid.
     quoted : impact speed of the first contact in m/s, where it is known.
-    first : restitution of the first contact over that of the second, where nothing tells its approach.
+    first : (e_1 - e_2)/(1 - e_2) of the first two contacts, where nothing tells the first approach.
     fallen : whether an approach that is not known was a fall from rest, if one is as fast; else it was steady.
     closures : the forces; by default those of :class:`~restitution.bounce.Closures`.
 
-    Where no restitution up to 1 gives a flight, it and all after it are NaN.
+    Where no restitution up to 1 gives a flight, it is 1: it leaves as fast as it comes.
     """
     chain = _Chain(kind, numbers, values, conditions, closures or Closures(measured=()))
     if chain.released:
@@ -60,13 +60,13 @@ def speeds(
     coming = 2 * chain.free_speed(chain.targets[0])
     for _ in range(_ROUNDS):
         before, after = chain.solve(chain.coming(coming, fallen), known=False)
-        if np.isnan(after[0]):  # too slow
+        if after[0] >= coming:  # too slow
             coming *= 2
             continue
         e_second = after[1] / before[1] if chain.contacts > 1 else np.nan
         if np.isnan(e_second):
             break
-        coming = after[0] / min(first * e_second, 1.0)
+        coming = after[0] / (e_second + first * (1 - e_second))
     return before, after
 
 
@@ -140,9 +140,7 @@ class _Chain:
             ) -> float:
                 return self._flown(run, (*found, e))[0] - target
 
-            if excess(1.0) < 0:
-                return before, after
-            e = brentq(excess, 1e-6, 1.0, xtol=_CLOSE)
+            e = brentq(excess, 1e-6, 1.0, xtol=_CLOSE) if excess(1.0) > 0 else 1.0
             found = (*found, e)
             after[k] = e * -run.v
             run = self._flown(run, found)[1]

@@ -4,21 +4,25 @@ Each value has an independent error; e and St follow from several values, so tha
 
     cov = J diag(sigma^2) J^T
 
-by central differences, and neighbouring impacts share values. Where the approach to the first contact is not
-known, what is assumed of it is among them.
+by differences over one error, and neighbouring impacts share values. Where the approach to the first contact is
+not known, what is assumed of it is among them.
+
+What the flights say depends on the forces that act in them. A few times do not tell which history force acts,
+whether a wake is left, and how far the wall reaches, so the :data:`MODELS` are tried as equally likely: values are
+their mean, and their scatter is among the errors.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.bounce import Closures, terminal_speed
+from restitution.bounce import Closures, OwnWake, terminal_speed
 from restitution.conditions import Conditions, QuotedImpact
 from restitution.doubts import Doubt
 from restitution.errors import InputError
@@ -29,10 +33,21 @@ from restitution.stokes import H_FILM, Speed, convention
 if TYPE_CHECKING:
     import pandas as pd
 
-FIRST, FIRST_SIGMA = 1.24, 0.10
-"""Restitution of the first contact over that of the second, where nothing tells the first: mean and standard
-deviation of the six measured records with two rebounds, 1.14 to 1.43 (``restitution/runs/restitutions.csv``, film
-up to 0.1 d, the model that the frames prefer)."""
+FIRST, FIRST_SIGMA = 0.33, 0.10
+"""(e_1 - e_2)/(1 - e_2) of the first two contacts, where nothing tells the approach to the first: mean of the six
+measured records with two rebounds, 0.28 to 0.39 (``restitution/runs/restitutions.csv``, film up to 0.1 d, the
+model that the frames prefer), and twice their spread, for five of them are of one sphere."""
+_FULL = Closures(measured=())
+MODELS: dict[str, Closures] = {
+    "history and wall": _FULL,
+    "drag alone": replace(_FULL, history=None, wall=None),
+    "history and wake": replace(_FULL, wake=OwnWake(), wall=None),
+    "wake and wall": replace(_FULL, wake=OwnWake(), history=None),
+}
+"""The forces that are tried beside drag and added mass: history, the wake of the approach, and the wall's
+resistance, which is known without inertia alone. Of the eight ways to have them or not these are four in which
+each is there as often as not, beside each other as well; the two that differ most are among them. The first is for
+the slopes."""
 GRAVITY = 9.81
 """In m/s2, for speeds without drag where no conditions are stated."""
 BEYOND = 1.3
@@ -42,13 +57,15 @@ _WORDS = {"times": "times of contact", "apexes": "apexes"}
 
 @dataclass(frozen=True)
 class FlightImpacts:
-    """Rows of the impact table (without St where conditions are not stated), ``free`` e without drag of each row.
+    """Rows of the impact table (without St where conditions are not stated), ``free`` e without drag of each row,
+    ``forces`` the least and the greatest e by the forces that are tried.
 
     ``notes`` say what was assumed, ``doubts`` what contradicts the input.
     """
 
     rows: list[dict] = field(repr=False)
     free: list[float]
+    forces: list[tuple[float, float]]
     notes: list[str]
     doubts: list[Doubt]
 
@@ -68,6 +85,7 @@ def impacts_of(
     stokes: str = "st",
     record: str = "",
     edge: float = H_FILM,
+    models: Mapping[str, Closures] = MODELS,
 ) -> FlightImpacts:
     """The impacts that lie between two known flights, or between a release or quoted speed and the first one.
 
@@ -79,12 +97,13 @@ def impacts_of(
     stokes : convention of the St reported.
     record : name that every row carries.
     edge : gap in diameters within which e stands for every viscous force.
+    models : the forces that are tried, by name.
 
     Raises
     ------
     InputError : where no two flights follow each other, or for a sphere that does not sink.
     """
-    found = FlightImpacts([], [], [], [])
+    found = FlightImpacts([], [], [], [], [])
     quoted = None if conditions is None else conditions.impact
     missing = sorted(set(range(flights.number[0], flights.number[-1] + 1)) - set(flights.number.tolist()))
     if missing:
@@ -101,7 +120,7 @@ def impacts_of(
         if len(number) > 1:
             first = quoted if number[0] == 1 else None
             by_drag = with_drag and conditions is not None
-            run = _Succession(flights.kind, number, value, sigma, conditions, first, by_drag, edge)
+            run = _Succession(flights.kind, number, value, sigma, conditions, first, by_drag, edge, models)
             _of_succession(found, run, flights, stokes, record)
     if not found.rows and not found.doubts:
         least = (
@@ -115,8 +134,7 @@ def impacts_of(
 class _Succession:
     """Bounces whose numbers follow each other, and what their speeds follow from.
 
-    Inputs are the values, the quoted speed of the first contact (0: none), and the restitution of the first
-    contact over that of the second.
+    Inputs are the values, the quoted speed of the first contact (0: none), and :data:`FIRST`.
     """
 
     kind: Kind
@@ -127,6 +145,7 @@ class _Succession:
     quoted: QuotedImpact | None
     by_drag: bool
     edge: float
+    models: Mapping[str, Closures]
 
     @property
     def released(self) -> bool:
@@ -156,48 +175,86 @@ class _Succession:
             before[0] = x[-2]
         return np.array([before, after])
 
-    def speeds(self, x: NDArray, fallen: bool = False) -> NDArray:
-        """The same by the model that was asked for."""
-        if not self.by_drag:
-            return self.without_drag(x)
+    def speeds(self, x: NDArray, forces: Closures, fallen: bool = False) -> NDArray:
+        """The same with drag and these forces."""
         quoted = None if self.quoted is None else float(x[-2])
         told = (self.kind, self.numbers, x[:-2], self.conditions, quoted, float(x[-1]), fallen)
-        return np.array(drag.speeds(*told, Closures(measured=(), film=self.edge)))
+        return np.array(drag.speeds(*told, replace(forces, film=self.edge)))
 
-    def with_slopes(self) -> tuple[NDArray, NDArray]:
-        """The speeds, and how far each error moves them, shape (errors, 2, contacts); NaN: an error not stated.
-
-        An approach that was steady and one that was a fall from rest are equally likely: the speeds are the mean
-        of both, half their difference the last of the errors.
-        """
+    def solved(self) -> Solved:
+        """The speeds, which models give them, and how far each error moves them."""
         x, errors = self.inputs()
-        speeds = self.speeds(x)
-        moves = []
-        for i, error in enumerate(errors):
-            if math.isnan(error):
-                moves.append(np.full_like(speeds, math.nan))
-            elif error > 0:
-                up, down = x.copy(), x.copy()
-                up[i] += error
-                down[i] -= error
-                moves.append((self.speeds(up) - self.speeds(down)) / 2)
-        if self.by_drag and not self.released:
-            half = np.nan_to_num(self.speeds(x, fallen=True) - speeds) / 2
-            speeds = speeds + half
+        if not self.by_drag:
+            before, after = speeds = self.without_drag(x)
+            slopes = [*self._slopes(self.without_drag, x, errors, speeds)]
+            return Solved(speeds, np.array(slopes), (after / before)[None])
+        speeds = np.array([self.speeds(x, forces) for forces in self.models.values()])
+        # What leaves as fast as it comes would need an e above 1: with these forces the flight cannot be.
+        possible = ~(speeds[:, 1] >= speeds[:, 0] * (1 - _ELASTIC))
+        some = np.logical_and.accumulate(possible.any(axis=0))
+        with np.errstate(all="ignore"):
+            weight = possible / possible.sum(axis=0)
+        mean = np.where(some, np.nansum(weight[:, None] * np.nan_to_num(speeds), axis=0), np.nan)
+        mean[np.isnan(speeds).all(axis=0)] = np.nan
+        best = max(range(len(speeds)), key=lambda k: (np.sum(possible[k]), -k))
+        forces = list(self.models.values())[best]
+        moves = [*self._slopes(lambda at: self.speeds(at, forces), x, errors, speeds[best])]
+        if not self.released:  # an approach that was steady and one that was a fall from rest are equally likely
+            half = (self.speeds(x, forces, fallen=True) - speeds[best]) / 2
+            mean, speeds = mean + half, speeds + half
             moves.append(half)
-        return speeds, np.array(moves).reshape(-1, *speeds.shape)
+        # Of a model that would need more than 1 the elastic contact counts.
+        scatter = (speeds - mean) / math.sqrt(max(len(speeds) - 1, 1))
+        unlike = tuple(n for n, can in zip(self.models, possible[:, some], strict=True) if not can.all())
+        return Solved(mean, np.array([*moves, *scatter]), speeds[:, 1] / speeds[:, 0], unlike)
+
+    @staticmethod
+    def _slopes(
+        speeds: Callable[[NDArray], NDArray], x: NDArray, errors: NDArray, here: NDArray
+    ) -> Iterator[NDArray]:
+        """How far each error moves the speeds from where they are ``here``; NaN for an error not stated."""
+        for i, error in enumerate(errors):
+            up = x.copy()
+            up[i] += error
+            if math.isnan(error):
+                yield np.full_like(here, math.nan)
+            elif error > 0:
+                yield speeds(up) - here
+
+
+_ELASTIC = 1e-7
+"""Below 1, from which on a contact is elastic: an e is solved for to 1e-9."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """``speeds`` before and after each contact, (2, contacts), how far each error ``moves`` them, (errors, 2,
+    contacts), e by each of the forces, (models, contacts), and those that are ``unlike`` these flights: they would
+    need an e above 1.
+    """
+
+    speeds: NDArray
+    moves: NDArray
+    e_by_forces: NDArray
+    unlike: tuple[str, ...] = ()
 
 
 def _of_succession(found: FlightImpacts, run: _Succession, flights: Flights, stokes: str, record: str) -> None:
     """Add its impacts."""
-    (before, after), moves = run.with_slopes()
+    solved = run.solved()
+    (before, after), moves = solved.speeds, solved.moves.reshape(-1, 2, len(run.contacts))
     e_free = np.divide(*run.without_drag(run.inputs()[0])[::-1])
     found.doubts.extend(_doubts(run, (before, after), e_free))
     known = np.flatnonzero(np.isfinite(before) & np.isfinite(after))
     if run.assumed and len(known):
         found.notes.append(
-            f"the approach to bounce {run.numbers[0]} is not in the {_WORDS[run.kind]}: taken to be that of an e "
-            f"{FIRST} +- {FIRST_SIGMA} times that of the next (a row 0, the release, or [impact] speed says it)"
+            f"the approach to bounce {run.numbers[0]} is not in the {_WORDS[run.kind]}: taken to be one of which "
+            f"{FIRST:.0%} +- {FIRST_SIGMA:.0%} less is lost than of the next (a row 0, the release, or [impact] "
+            "speed says it)"
+        )
+    if solved.unlike:
+        found.notes.append(
+            f"forces {', '.join(solved.unlike)} would need an e above 1: in the errors alone they count, as e = 1"
         )
     for k in known:
         v, out, contact = float(before[k]), float(after[k]), int(run.contacts[k])
@@ -223,6 +280,7 @@ def _of_succession(found: FlightImpacts, run: _Succession, flights: Flights, sto
             }  # fmt: skip
         found.rows.append(row)
         found.free.append(float(e_free[k]))
+        found.forces.append((float(solved.e_by_forces[:, k].min()), float(solved.e_by_forces[:, k].max())))
 
 
 def _time(flights: Flights, contact: int) -> float:

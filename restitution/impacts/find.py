@@ -8,14 +8,14 @@ central 68 % range of the draws, with a fixed seed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
-from restitution.doubts import Doubt, cleaned, of_track
+from restitution.doubts import Doubt, cleaned, holes, of_track
 from restitution.errors import InputError
 from restitution.impacts.speed import SpeedMeasure, Speeds, UnresolvedError
 from restitution.stokes import H_FILM, Speed, convention
@@ -97,7 +97,11 @@ def find_impacts(
     rows, notes = [], _remarks(track, found)
     edge = h_film if Speed(speed) is Speed.FAR else None
     touches = _with_quoted_first(track, conditions, found, notes)
+    lost = holes(track, found, conditions)
     for i, contact in enumerate(touches):
+        if any(_holds(contact, hole.last) for hole in lost):
+            notes.append(f"impact {i + 1}: frames are missing in which a whole flight lies")
+            continue
         try:
             speeds = measure(contact, np.random.default_rng([seed, i]))
         except UnresolvedError as reason:
@@ -106,6 +110,8 @@ def find_impacts(
             when = f"{t:.4g}" if abs(t) < 100 else f"{t:.4f}"  # a computer's clock needs all its digits
             notes.append(f"impact {i + 1}, near t = {when} s: {reason}")
             continue
+        if speeds.v_out is None and track.quantity == "velocity":
+            speeds = _within_a_frame(speeds, track, conditions, np.random.default_rng([seed, i, 1]))
         rows.append(
             {"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, edge, stokes)
         )
@@ -113,8 +119,34 @@ def find_impacts(
     return Impacts(rows, track.sigma, notes, doubts, touches, measure)
 
 
+def _within_a_frame(speeds: Speeds, track: Track, conditions: Conditions, rng: np.random.Generator) -> Speeds:
+    """Velocities tell a contact to within a frame alone, before and after which gravity acts.
+
+    The approach goes on for up to a frame; the rebound was faster by up to a frame's fall than what is seen of it,
+    and by the wake or drag, which about double that.
+    """
+    frame = float(np.median(np.diff(track.time_s)))
+    fall = abs(conditions.free_fall) * frame
+    v_in = speeds.v_in + fall * rng.uniform(-0.5, 0.5, len(speeds.v_in))
+    return replace(speeds, v_in=v_in, v_out_upper=speeds.v_out_upper + _BRAKED * fall)
+
+
+_BRAKED = 2.0
+"""Free falls with which a rebound is braked at first: gravity, and as much by drag and wake."""
+
+
+def _holds(contact: Contact, frame: int) -> bool:
+    """Whether the frames after ``frame`` are missing beside the contact, from its third frame on each side."""
+    if not contact.approach or not contact.rebound:
+        return False
+    return contact.approach[-1] - 3 <= frame <= contact.rebound[0] + 2
+
+
 def _remarks(track: Track, found: Contacts) -> list[str]:
     """How a track was taken where it does not say so itself."""
+    if not found.contacts and not begins_on_rebound(track, found):
+        what = "nearer to the wall and away again" if track.quantity == "gap" else "towards the wall and back"
+        return [f"no contact: the sphere never moves {what} (does the record end before it?)"]
     if found.level is None or abs(found.level) <= DETECTION * track.sigma:
         return []
     return [f"the sphere rests at a gap of {found.level:.3g} m: gaps are counted from there"]

@@ -11,7 +11,7 @@ from restitution.conditions import Conditions
 from restitution.doubts import Doubt, cleaned, of_track
 from restitution.errors import InputError
 from restitution.tracks import Track, contacts
-from tests.flights import as_track, film, fly
+from tests.flights import STEEL_IN_OIL, as_track, film, fly
 
 
 def doubts(track, conditions):
@@ -179,6 +179,81 @@ def test_a_minimum_in_mid_air_is_no_contact(seed):
     found = contacts(replace(track, value=value))
     assert len(found.contacts) == len(contacts(track).contacts)
     assert any(falling <= i < falling + 20 for i in found.hovering)
+
+
+def dropped(seed, fps=1000.0, noise=2e-5):
+    """Steel of 3 mm in oil that falls from rest at 20 mm and bounces three times."""
+    c = STEEL_IN_OIL
+    rng = np.random.default_rng([98, seed])
+    flights, _ = fly(rng.uniform(15e-3, 25e-3), 0.0, (0.8, 0.7, 0.55), steady_fall(c), c.free_fall)
+    times = np.arange(rng.uniform(0, 1 / fps), flights[-1].end, 1 / fps)
+    return as_track(times, film(flights, times)[0] + noise * rng.standard_normal(len(times))), c
+
+
+@pytest.mark.parametrize(("length", "time"), [(1.1, 1.0), (1.0, 1.1), (1 / 1.2, 1.0), (1.0, 0.95), (2.0, 1.0)])
+def test_a_tenth_is_seen_where_flights_are_long(length, time):
+    """Of a clock or a pixel; the factor that is said is that of the acceleration."""
+    for seed in range(8):
+        track, c = dropped(seed)
+        assert doubts(track, c) == []
+        (doubt,) = doubts(Track(time * track.time_s, length * track.value, "gap", length * track.sigma), c)
+        assert doubt.name == "clock"
+        times = float(doubt.message.split("times are ")[1].split()[0])
+        away = np.sqrt(length) / time
+        assert times == pytest.approx(away if "short" in doubt.message else 1 / away, rel=0.05)
+
+
+def test_a_wake_is_no_wrong_clock():
+    """As strong as after the first rebound of the 3 mm sphere of Gondret et al. (2002), a third of v_in/T."""
+    c = STEEL_IN_OIL
+    for seed in range(20):
+        rng = np.random.default_rng([97, seed])
+        wake, decay = rng.uniform(0.2, 0.7), rng.uniform(4e-3, 15e-3)
+        start = rng.uniform(15e-3, 25e-3)
+        flights, _ = fly(start, 0.0, (0.8, 0.7, 0.55), steady_fall(c), c.free_fall, wake=wake, decay=decay)
+        times = np.arange(0, flights[-1].end, 1e-3)
+        track = as_track(times, film(flights, times)[0] + 2e-5 * rng.standard_normal(len(times)))
+        assert doubts(track, c) == []
+
+
+def test_a_wrong_solid_or_liquid_is_named_as_such():
+    for seed in range(6):
+        track, c = dropped(seed)
+        (glass,) = doubts(track, changed(c, sphere={"density": 2500 / 7800}))
+        assert float(glass.message.split("a sphere of ")[1].split()[0]) == pytest.approx(7800, rel=0.15)
+        (thick,) = doubts(track, changed(c, fluid={"viscosity": 10}))
+        assert (thick.name, "viscosity" in thick.message, "mPa s" in thick.message) == ("speed", True, False)
+        for other in (
+            changed(c, sphere={"density": 1e-3}),
+            changed(c, sphere={"density": 935 / 7800}, fluid={"density": 7800 / 935}),
+        ):
+            (light,) = doubts(track, other)
+            assert (light.name, "rises" in light.message) == ("lighter", True)
+
+
+def test_a_sphere_that_rises_to_a_ceiling_is_not_doubted():
+    """Lighter than the liquid, the gap counted from the ceiling: it falls upwards, by the same equation."""
+    c = changed(STEEL_IN_OIL, sphere={"density": 50 / 7800})
+    flights, _ = fly(0.02, 0.0, (0.6, 0.5), steady_rise(c), abs(c.free_fall))
+    times = np.arange(0, flights[-1].end, 5e-4)
+    track = as_track(times, film(flights, times)[0] + 1e-5 * np.random.default_rng(0).standard_normal(len(times)))
+    assert doubts(track, c) == []
+
+
+def steady_rise(c):
+    heavier = 2 * c.fluid.density - c.sphere.density  # the same weight in the fluid, downwards
+    return steady_fall(changed(c, sphere={"density": heavier / c.sphere.density}))
+
+
+def test_a_hole_is_all_that_is_doubtful_about_a_record_with_one():
+    """The approach is not whole: what it says of a terminal speed is no second doubt."""
+    for seed in range(8):
+        track, c = dropped(seed)
+        first = contacts(track).contacts[0].nearest
+        for begin, end in ((first - 28, first + 12), (first + 1, first + 70)):
+            keep = np.setdiff1d(np.arange(len(track.value)), np.arange(begin, end))
+            found = names(replace(track, time_s=track.time_s[keep], value=track.value[keep]), c)
+            assert set(found) <= {"minimum", "hole"}
 
 
 def test_doubts_are_refused_as_input():
