@@ -19,7 +19,7 @@ def main():
     reading = Reading()
     recordings = read_recordings([RECORD], reading)
     measured = Measured.of(recordings, wakes=[True])  # the sphere meets the wake of its own approach
-    fit = fit_law(measured, Plan(model_of("eq4_exponential")), reading)
+    fit = fit_law(measured, Plan(model_of("eq4_linear")), reading)
     result = fit.result()
 
     restitutions = fit.trajectories[0].restitutions

@@ -26,6 +26,7 @@ FILES = {
     "readings.csv",
     "trajectories.csv",
     "trajectory_readings.csv",
+    "trajectory_left_out.csv",
     "index.html",
 }
 
