@@ -70,6 +70,7 @@ def run(args: argparse.Namespace) -> int:
     from restitution.validation.rows import Setting, all_rows, chosen
     from restitution.validation.scorecard import FILE, SO_FAR, Judged, Scorecard
 
+    validate_trajectory.check(args)
     if args.list:
         _list(all_rows(Setting(Path(args.runs))))
         return 0
@@ -93,6 +94,10 @@ def run(args: argparse.Namespace) -> int:
     write_folder(folder, {FILE: card.text(), "index.html": page.render(card)})
     (folder / SO_FAR).unlink(missing_ok=True)
     _show(card)
+    if baseline is None:
+        show(
+            f"no baseline: {path} is not there, so nothing is known of what was (--baseline FILE, --bless REASON)"
+        )
     for name in (FILE, "index.html"):
         show(str(folder / name))
     if args.bless is not None:

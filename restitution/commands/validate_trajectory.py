@@ -35,6 +35,25 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     options.add_track(parser)
 
 
+def check(args: argparse.Namespace) -> None:
+    """Refuse options of the one kind of scorecard beside those of the other: they would be without effect."""
+    from restitution.errors import Defect, InputError
+
+    own = ("case", "name", "first_contact", "column", *_TRACK)
+    rows = ("only", "failed", "list", "resume", "strict", "baseline", "bless")
+    of_rows = args.trajectory is None
+    without = [name for name in (own if of_rows else rows) if getattr(args, name) not in (None, False, [])]
+    if of_rows and args.grid_error:
+        without.append("grid_error")
+    rule = "belongs to --trajectory" if of_rows else "is of the scorecard of rows: --trajectory does not take it"
+    if without:
+        raise InputError(*(Defect(rule, field=f"--{name.replace('_', '-')}") for name in without))
+
+
+_TRACK = ("settings", "unit", "time_unit", "fps", "pixel", "direction", "wall", "point", "particle")
+"""Options of a track (:func:`restitution.commands.options.add_track`)."""
+
+
 def run(args: argparse.Namespace, folder: Path) -> int:
     """Score, print, write; exit status 0, 1 where a value is not the record's, 3 where there is none."""
     from restitution.errors import Defect, InputError

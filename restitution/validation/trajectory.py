@@ -15,7 +15,7 @@ import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -29,7 +29,7 @@ from restitution.impacts.bounces import Bounces, filmed
 from restitution.impacts.find import Impacts, find_impacts
 from restitution.impacts.shipped import impacts_of
 from restitution.stokes import Speed
-from restitution.tracks import Track
+from restitution.tracks import Track, contacts
 from restitution.validation.rebound import Errors, quantities, references
 from restitution.validation.row import Kind, Reference, Row, Values, near
 from restitution.validation.scorecard import Judged, Result
@@ -38,6 +38,8 @@ from restitution.validation.verdict import Verdict
 APPROACH = "approach, m/s"
 ANOTHER = 1.5
 """Ratio of approach speeds from which on it cannot be the same impact: a unit is wrong, or the case."""
+_AT_REST = 0.02
+"""Diameters from which on the level of a trajectory is told: above noise, deeper than stiff contacts go."""
 _FINER = 4.0
 """Times more frames than the record's camera from which on a track may be filmed anew with it: between coarser
 frames straight lines cut the flight short."""
@@ -127,15 +129,33 @@ def score(
     errors = errors if errors is not None else Errors(grid=0.0)
     found = find_impacts(track, case.conditions, Speed.FAR, record=name, kind="simulated")
     approach = _approach(found, case, name)
+    own: list[str] = []
     if track.quantity == "velocity":
         track = _integrated(track, found)
+        own.append("velocities: the moment of a contact is known to a step, and times between contacts to that")
+    else:
+        track, own = _from_rest(track, case.conditions.sphere.diameter)
     bounces = filmed(track, case.conditions, first_s)
     values = _values(bounces, track, found, case)
     row = _row(name, case, errors)
     labels = {r.label for r in row.truth()}
     values = {APPROACH: approach} | {label: float(v) for label, v in values.items() if label in labels}
     judged = Judged.of(row, Result(key=row.key, values=values), None)
-    return Scored(name, case, judged, bounces, [*notes, *found.notes, *(str(d.message) for d in found.doubts)])
+    doubts = [f"doubt: {doubt.message}" for doubt in found.doubts]
+    return Scored(name, case, judged, bounces, [*notes, *found.notes, *own, *doubts])
+
+
+def _from_rest(track: Track, diameter: float) -> tuple[Track, list[str]]:
+    """The gaps from where the sphere rests, where that is no matter of noise; what else their level says."""
+    level, deepest = contacts(track).level or 0.0, float(np.min(track.value))
+    if abs(level) > _AT_REST * diameter:
+        return replace(track, value=track.value - level), []
+    if deepest < -_AT_REST * diameter:
+        return track, [
+            f"doubt: it goes {-deepest / diameter:.2g} d into the wall: where its contact is stretched in time, "
+            "times count from its end (--first-contact S); else the wall is lower than stated (--wall)"
+        ]
+    return track, []
 
 
 def _row(name: str, case: Case, errors: Errors) -> Row:

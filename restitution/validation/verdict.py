@@ -77,16 +77,17 @@ def against_baseline(
 ) -> dict[str, Verdict]:
     """The verdict of each reference against what the baseline has, by label.
 
-    What should be zero, or need only be reached, has a bound and no stored number, unless it is known to miss it.
+    What should be zero, or need only be reached, is held by its bound, unless it is known to miss it; but only
+    where the baseline has the row: without one nothing is known of what was.
     """
     found = {}
     for reference in row.truth():
         label = reference.label
-        if values is None or label not in values:
+        if held is None or values is None or label not in values:
             found[label] = Verdict.NOT_EVALUATED
         elif reference.side != "both" and label not in row.known:
             found[label] = Verdict.PASS if reference.holds(values[label]) else Verdict.FAIL
-        elif held is None or label not in held:
+        elif label not in held:
             found[label] = Verdict.NOT_EVALUATED
         else:
             moved = abs(values[label] - held[label].value)

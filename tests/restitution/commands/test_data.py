@@ -12,7 +12,7 @@ def test_list_names_every_table_on_one_line(capsys):
     assert main(["data", "list"]) == 0
     lines = capsys.readouterr().out.splitlines()[1:]
     assert [line.split()[0] for line in lines] == datasets.names()
-    assert max(map(len, lines)) <= 80
+    assert max(map(len, lines)) <= 88
     row = next(line for line in lines if line.startswith("gondret2002_st152"))
     assert row.split()[1:5] == ["measured", "trajectory", "98", "152"]
 

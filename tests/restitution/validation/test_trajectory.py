@@ -69,6 +69,35 @@ def test_another_impact_is_refused_and_says_what_may_be_wrong():
         score("slow motion", slow, CASE)
 
 
+def test_gaps_count_from_where_the_sphere_rests():
+    time, gap, *_ = flown()
+    still = np.arange(1, 200) * 2e-4
+    time, gap = np.r_[time, time[-1] + still], np.r_[gap, np.zeros(len(still))]
+    told = [score("g", Track(time, gap + shift, "gap", 1e-6), CASE) for shift in (0.0, 1.5e-3)]
+    for label in ("apex 1, mm", "flight 1, ms", "rms, d"):
+        assert told[1].values[label] == pytest.approx(told[0].values[label], rel=1e-3)
+    assert any("gaps are counted from there" in note for note in told[1].notes)
+
+
+def test_a_sphere_deep_in_the_wall_is_doubted():
+    time, gap, *_ = flown()
+    assert any("into the wall" in n for n in score("g", Track(time, gap - 3e-4, "gap", 1e-6), CASE).notes)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--case", "gondret-st152"],
+        ["--only", "couette", "--unit", "mm"],
+        ["--trajectory", "a.csv", "--bless", "x"],
+    ],
+)
+def test_options_without_effect_are_refused(options, tmp_path, capsys):
+    assert main(["validate", *options, "--out", str(tmp_path / "out")]) == 2
+    assert "--trajectory" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_an_assertion_names_what_fails_and_a_known_shortfall_can_be_held():
     time, gap, *_ = flown()
     columns = {"time_s": time, "gap_m": gap}
