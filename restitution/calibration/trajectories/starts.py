@@ -105,16 +105,26 @@ class Approach:
         return -rate(self.time, self.gap, self.sigma, max(2, min(4, len(self.time) // 2)))
 
     def fallen(self, closures: Closures) -> tuple[NDArray, NDArray, float]:
-        """Height of a release from rest in m and time from there to the first frame in s; covariance; chi^2."""
-        c, v = self.conditions, max(self.first, 0.0)
+        """Height of a release from rest in m and time from there to the first frame in s; covariance; chi^2.
+
+        The time is negative where the sphere is held over the first frames.
+        """
+        c, v, since = self.conditions, max(self.first, 0.0), self.time - self.time[0]
         begin = np.array([self.gap[0] + v**2 / (2 * c.free_fall), v / c.free_fall])
+        moved = np.flatnonzero(self.gap[0] - self.gap > _MOVED * self.sigma)
+        if (
+            len(moved)
+            and (held := since[moved[0]] - math.sqrt(2 * (self.gap[0] - self.gap[moved[0]]) / c.free_fall)) > 0
+        ):
+            begin = np.array([self.gap[0], -held])
         highest = self.gap[0] + 5 * terminal_speed(c) ** 2 / c.free_fall
 
         def shown(x: NDArray) -> NDArray:
-            end = float(x[1] + np.ptp(self.time) + 1e-6)
-            return bounce(c, Release(float(x[0])), closures, end, 1e-5).gap(self.time - self.time[0] + x[1])
+            end = float(x[1] + since[-1] + 1e-6)
+            return bounce(c, Release(float(x[0])), closures, end, 1e-5).gap(np.maximum(since + x[1], 0.0))
 
-        low, high = [self.gap[0], 0.0], [highest, 10 * math.sqrt(highest / c.free_fall)]
+        low = [self.gap[0] - 3 * self.error, -0.9 * since[-1]]
+        high = [highest, 10 * math.sqrt(highest / c.free_fall)]
         return self._nearest(shown, begin, low, high, [0.1 * c.sphere.diameter, 1e-3])
 
     def steady(self, closures: Closures) -> tuple[NDArray, NDArray, float]:

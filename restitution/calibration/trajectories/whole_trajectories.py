@@ -35,6 +35,8 @@ from restitution.stokes import H_FILM, Speed, convention
 
 _ROUNDS = 10
 """Maps about better and better centres before the estimate is given up."""
+_ANOTHER_FLIGHT = 0.2
+"""Distance of the frames from the model, rms in d, beyond which it follows another flight."""
 _FEW = 9
 """Unknowns up to which every map has the terms of their pairs; of more, those about a known centre alone."""
 
@@ -210,9 +212,15 @@ def settle(model: Bounces | Films) -> WholeTrajectory:
             own = likelihood.prior[1] * np.sqrt(np.diag(m.moments()[1]))
             steps, narrow = np.clip(likelihood.named(own).flight, 0.02 * steps, steps), True
     else:
-        refuse(doubt for doubt in r.doubts if doubt.name == "speed")
-        return replace(_summary(model, likelihood, m), settled=False)
-    return _summary(model, likelihood, m)
+        return _followed(replace(_summary(model, likelihood, m), settled=False))
+    return _followed(_summary(model, likelihood, m))
+
+
+def _followed(found: WholeTrajectory) -> WholeTrajectory:
+    """Refuse a sphere too fast for its conditions where no flight of the model is near its frames."""
+    if not found.settled or found.rms_d > _ANOTHER_FLIGHT:
+        refuse(doubt for doubt in found.recording.doubts if doubt.name == "speed")
+    return found
 
 
 def _summary(model: Bounces | Films, likelihood: RecordLikelihood, m: Marginal) -> WholeTrajectory:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from restitution import datasets
@@ -28,6 +29,17 @@ def test_a_guessed_release_covers_the_true_one(name):
     assert start.kind == "height"
     assert abs(start.prior.mean - truth) < 1.5 * start.prior.sigma
     assert start.prior.sigma < 0.4 * truth
+
+
+def test_a_sphere_that_is_held_before_its_release_starts_from_rest():
+    track, conditions = as_file("li2012_drop5")
+    step = float(np.median(np.diff(track.time_s)))
+    held = 30
+    time = np.r_[track.time_s[0] - step * np.arange(held, 0, -1), track.time_s]
+    gap = np.r_[np.full(held, track.value[0]), track.value]  # let go where the frames begin
+    start = recording("held", Track(time, gap, "gap", track.sigma), conditions).start
+    assert start.kind == "height"
+    assert start.prior.mean == pytest.approx(track.value[0], rel=0.05)
 
 
 def test_an_impact_that_was_not_filmed_is_told_by_its_rebound():
