@@ -23,7 +23,7 @@ def main():
             print(f"{r.label}: {simulated.values[r.label]:.4g}, the record {goal}")
     print(f"could not be filled: {', '.join(simulated.left_open)}")
     # In a test of your own solver: fails where a value is not the record's, a known shortfall held where it is.
-    assert_trajectory(track, "gondret-st152", allow={"apex 2, mm": 0.2})
+    assert_trajectory(track, case.name, allow={"apex 2, mm": 0.2}, may_lack=simulated.left_open)
     return {"measured": measured.values, "simulated": simulated.values}
 
 

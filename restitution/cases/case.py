@@ -83,9 +83,7 @@ class Numerics(Record):
     sides: Literal["periodic", "no-slip", "free-slip"] = "periodic"
     top: Literal["no-slip", "free-slip", "outlet"] = "no-slip"
     precision: Literal["float32", "float64"] = "float32"
-    rates: Literal["two-relaxation-times", "dhumieres2002", "quiet", "balanced", "quiet-by-place"] = (
-        "quiet-by-place"
-    )
+    rates: Literal["two-relaxation-times", "dhumieres2002", "quiet", "quiet-by-place"] = "quiet-by-place"
     interpolation: Literal["linear", "central-linear"] = "linear"
     symmetry: Literal["none", "quarter"] | None = None
 

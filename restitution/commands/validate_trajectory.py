@@ -55,7 +55,7 @@ _TRACK = ("settings", "unit", "time_unit", "fps", "pixel", "direction", "wall", 
 
 
 def run(args: argparse.Namespace, folder: Path) -> int:
-    """Score, print, write; exit status 0, 1 where a value is not the record's, 3 where there is none."""
+    """Score, print, write; exit status 0, 1 where a value is not the record's, 3 where one is lacking."""
     from restitution.errors import Defect, InputError
     from restitution.files import write_folder
     from restitution.validation import trajectory_page

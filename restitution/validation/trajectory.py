@@ -14,7 +14,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -233,6 +233,7 @@ def assert_trajectory(
     name: str = "trajectory",
     grid_error: float = 0.0,
     allow: Mapping[str, float] | None = None,
+    may_lack: Collection[str] = (),
 ) -> Scored:
     """For a test of one's own solver: fail unless a trajectory is as the record has it, within the errors of both.
 
@@ -244,6 +245,7 @@ def assert_trajectory(
     grid_error : relative error of a first apex by the solver's own grid, from its own convergence study.
     allow : by label, such as ``{"apex 1, mm": 0.5}``, the greatest deviation from the record, in its unit, in
         place of the record's error: to hold a known shortfall where it is.
+    may_lack : labels of what the trajectory need not reach; what else it lacks fails, for it was not evaluated.
 
     Returns
     -------
@@ -261,10 +263,11 @@ def assert_trajectory(
     allowed = dict(allow or {})
     scored = score(name, track, case_of(case), Errors(grid=grid_error))
     truth = {r.label: r for r in scored.judged.row.truth()}
-    unknown = [label for label in allowed if label not in truth]
-    if unknown:
-        raise InputError(Defect(f"is none of {', '.join(truth)}", field="allow", value=unknown[0]))
-    wrong = []
+    for field, labels in (("allow", allowed), ("may_lack", may_lack)):
+        unknown = [label for label in labels if label not in truth]
+        if unknown:
+            raise InputError(Defect(f"is none of {', '.join(truth)}", field=field, value=unknown[0]))
+    wrong = [f"{label} was not evaluated" for label in scored.left_open if label not in may_lack]
     for label, value in scored.values.items():
         held = truth[label]
         goal = 0.0 if held.side == "at most" else held.value

@@ -121,8 +121,7 @@ def _fill(ax: Axes, scored: Sequence[Scored]) -> None:
 
 
 def verdict_of(scored: Sequence[Scored]) -> Verdict:
-    """Of all trajectories together: a failure, a pass, or nothing evaluated beyond the approach."""
+    """Of all trajectories together: not evaluated, where one does not reach what the record has, is no pass."""
     if any(one.missed for one in scored):
         return Verdict.FAIL
-    enough = all(len(one.values) > 1 for one in scored)
-    return Verdict.PASS if enough else Verdict.NOT_EVALUATED
+    return Verdict.NOT_EVALUATED if any(one.left_open for one in scored) else Verdict.PASS
