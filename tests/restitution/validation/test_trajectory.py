@@ -114,7 +114,7 @@ def test_options_without_effect_are_refused(options, tmp_path, capsys):
 def test_an_assertion_names_what_fails_and_a_known_shortfall_can_be_held():
     time, gap, *_ = flown()
     columns = {"time_s": time, "gap_m": gap}
-    with pytest.raises(AssertionError, match="theirs: .*apex 1, mm"):
+    with pytest.raises(AssertionError, match=r"theirs: .*apex 1, mm"):
         assert_trajectory(columns, "gondret-st152", name="theirs")
     missed = score("theirs", Track.from_table(pd.DataFrame(columns)), CASE).missed
     scored = score("theirs", Track.from_table(pd.DataFrame(columns)), CASE)
