@@ -7,11 +7,13 @@ import secrets
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, nullcontext, suppress
 from pathlib import Path
+from typing import IO
 
 from restitution.errors import Defect, InputError
 from restitution.locks import hold, replacing
 
 _PART = ".part"
+_TRIES = 5
 
 
 def check_place(path: str | Path) -> None:
@@ -89,12 +91,11 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
         for name, (target, content) in contents.items():
             if target.is_dir():
                 raise InputError(Defect("cannot be written: it is a folder", file=name))
-            temporary = target.with_name(f".{target.name}.{secrets.token_hex(8)}{_PART}")
             try:
                 _remove_stale(target)
-                stream = streams.enter_context(temporary.open("xb", buffering=0))
+                stream, temporary = _aside(target)
+                streams.enter_context(stream)
                 aside.append((name, temporary, target))
-                hold(stream.fileno())
                 rest = memoryview(content.encode() if isinstance(content, str) else content)
                 while rest:
                     rest = rest[stream.write(rest) :]
@@ -107,6 +108,21 @@ def _write(contents: Mapping[str, tuple[Path, str | bytes]]) -> None:
                     temporary.replace(target)
                 except OSError as error:
                     raise _defect(error, name) from None
+
+
+def _aside(target: Path) -> tuple[IO[bytes], Path]:
+    """A new file beside ``target``, held: one that another writer took for stale before that is given up.
+
+    Where files cannot be held none is taken for stale either, and the last one serves.
+    """
+    for tries_left in reversed(range(_TRIES)):
+        temporary = target.with_name(f".{target.name}.{secrets.token_hex(8)}{_PART}")
+        stream = temporary.open("xb", buffering=0)
+        if (hold(stream.fileno()) and temporary.exists()) or not tries_left:
+            break
+        stream.close()
+        temporary.unlink(missing_ok=True)
+    return stream, temporary
 
 
 def _remove(aside: Sequence[tuple[str, Path, Path]]) -> None:

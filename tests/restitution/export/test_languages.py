@@ -35,7 +35,10 @@ def test_agrees_on_a_thousand_points(name, key, tmp_path):
     # Where a law is a small difference its error is that of its terms, of order 1: e_dry - 36/St near 0.
     terms = 1e-15 if laws.get(name).family == "rebound" else 0.0
     np.testing.assert_allclose(given[:, 0], expected[:, 0], rtol=1e-12, atol=terms)
-    np.testing.assert_allclose(given[:, 1], expected[:, 1], rtol=1e-11)
+    # And where a curve is nearly flat, its slope is a small difference of terms of order value over argument.
+    flat = 1e-12 * np.nan_to_num(np.abs(expected[:, 0] / rows[:, 0]), nan=0.0, posinf=0.0)
+    close = np.isclose(given[:, 1], expected[:, 1], rtol=1e-11, atol=flat, equal_nan=True)
+    assert close.all(), (rows[~close], given[~close, 1], expected[~close, 1])
     np.testing.assert_array_equal(given[:, 2], expected[:, 2])
 
 
