@@ -117,6 +117,9 @@ class Rates:
         q_x = 5 (A + B) - 4 j_x, m_x = A - B, and a third of F given to A and to B each, that leaves the
         non-equilibrium parts -5 F/(3 s_q) of q and -F/s_m of m, and of A half of q/5 + m: that of one rate for
         both, L = (L_q + 3 L_m)/4. So a slower q makes up for the fast m that keeps a flow quiet.
+
+        That holds for steady flow: at low viscosity q takes hundreds of steps, and a film of about one cell that a
+        sphere closes faster than that is lost. Spheres that meet walls want :meth:`RatesByPlace.quiet`.
         """
         slow = 1 / cls.two_relaxation_times(viscosity, magic).q - 0.5
         fast = min(1.0, slow)
