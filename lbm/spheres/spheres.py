@@ -27,7 +27,7 @@ import numpy as np
 from lbm import arguments
 from lbm.bodies.body import Body
 from lbm.bodies.reflection import SCHEMES
-from lbm.errors import InputError
+from lbm.errors import DivergenceError, InputError
 from lbm.faces.records import FACES
 from lbm.fluid.lattice import BOUNCE, PERIODIC, SLIP, Lattice
 from lbm.spheres.contact import Contact, Impact
@@ -46,6 +46,8 @@ COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx
 _MOVING = ("centres", "velocities", "spins", "spin_changes", "forces", "torques", "surplus")
 _SMALLEST_RADIUS = 2.0
 """In cells: below, a sphere is not resolved."""
+_TOP_SPEED = 1.0
+"""Of a surface, in cells a step: beyond, it passes cells between two reflections, and sub-steps have no end."""
 _STEPS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
 """Steps at which a description samples the drive."""
 _GAPS = (0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 0.9, 1.1, 1.5, 3.0)
@@ -181,10 +183,8 @@ class Spheres(Body):
                 if np.linalg.norm(apart) < r + self.radii[other]:
                     raise InputError(f"spheres {other} and {s} overlap")
 
-    def reach(self, lattice: Lattice) -> np.ndarray | None:
+    def reach(self, lattice: Lattice) -> np.ndarray:
         """The planes with links and refilled cells, their neighbours, and the neighbours of these."""
-        if not np.isfinite(self.centres).all():  # of a run that has diverged, as its guard will find
-            return None
         n, periodic = lattice.grid.nz, lattice.grid.z_low == PERIODIC
         ends = zip(self.centres[:, 2] - self.radii - 3, self.centres[:, 2] + self.radii + 3, strict=True)
         planes = np.concatenate([np.arange(math.floor(low), math.ceil(high)) for low, high in ends])
@@ -217,6 +217,7 @@ class Spheres(Body):
         if given is not None:
             new = arguments.vector("drive", given)
             refuse_asymmetric(mirrored_axes(grid, self.centres[s]), "drive", new)
+            self._stop_runaway(s, step, new)
             self.centres[s] += 0.5 * (v + new)
         else:
             self._free = True
@@ -238,6 +239,7 @@ class Spheres(Body):
                 push, turn = self.film.along(gap, v, self.spins[s], _away(f) * np.eye(3)[f // 2])
                 force, torque = force + push, torque + turn
         new = v + (force + weight) / mass
+        self._stop_runaway(s, step, new)
         centre = self.centres[s] + 0.5 * (v + new)
         for f, gap in near.items():
             axis, sign = f // 2, _away(f)
@@ -253,7 +255,16 @@ class Spheres(Body):
         shell = 0.4 * self.volumes[s] * radius**2
         self.spin_changes[s] = (torque + shell * self.spin_changes[s]) / (0.4 * mass * radius**2 + shell)
         self.spins[s] += self.spin_changes[s]
+        self._stop_runaway(s, step, new)
         return new
+
+    def _stop_runaway(self, s: int, step: float, velocity: np.ndarray) -> None:
+        """Raise :class:`DivergenceError` where a surface is too fast, or not a number."""
+        speed = math.hypot(*velocity) + float(self.radii[s]) * math.hypot(*self.spins[s])
+        if not speed <= _TOP_SPEED:
+            i, j, k = (math.floor(x) for x in self.centres[s])
+            hint = f" (allowed: up to {_TOP_SPEED:g} cell a step); take more cells, or a lower lattice speed"
+            raise DivergenceError(round(step) + 1, (i, j, k), f"speed of the surface of sphere {s}", speed, hint)
 
     def describe(self) -> dict:
         """Every number that decides the motion; functions by what they give at a few arguments."""

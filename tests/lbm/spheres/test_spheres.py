@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 from lbm import Rates, Simulation
+from lbm.errors import DivergenceError
 from lbm.problems import bouncing_spheres as bouncing
 from lbm.problems import spheres as flows
 from lbm.spheres import RESOLVED, Sphere, Spheres, lost_to_grid
@@ -84,6 +85,27 @@ def test_slow_changes_of_spin_follow_the_torque_alone():
     gained = inertia * (track["wz"][-1] - 0.002)
     fluid = 0.4 * ball.volumes[0] * 16 * (track["wz"][-1] - track["wz"][-2])
     assert gained + fluid == pytest.approx(track["tz"].sum(), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        {"gravity": (0.0, 0.0, -1e3)},
+        {"gravity": (1e300, 0.0, 0.0)},
+        {"spin": (0.0, 0.0, 1e8)},
+        {"drive": lambda step, gap: (0.0, 0.0, -1e12)},
+    ],
+    ids=["to the wall", "overflow", "spin", "drive"],
+)
+def test_a_sphere_that_runs_away_is_stopped_in_the_step_in_which_it_does(start):
+    """Near a wall its sub-steps would have no end; far away its place would be no number."""
+    options = dict(start)
+    sphere = Sphere(3.0, 8.0, (8.0, 8.0, 3.4), spin=options.pop("spin", (0.0, 0.0, 0.0)))
+    flow = Simulation((16, 16, 16), viscosity=0.1, faces={"z": "no-slip"})
+    flow.add(Spheres([sphere], **options))
+    with pytest.raises(DivergenceError, match="sphere 0") as stopped:
+        flow.run(100)
+    assert stopped.value.step <= 2
 
 
 def test_sub_steps_and_place_of_contact_do_not_decide_the_rebound():
