@@ -23,6 +23,7 @@ from restitution.commands import (
     predict,
     report,
     simulate,
+    sweep,
     validate,
 )
 from restitution.errors import Defect, InputError, OutOfRangeWarning, first_of, printable
@@ -49,6 +50,7 @@ def build_parser() -> argparse.ArgumentParser:
         cases,
         simulate,
         bounce,
+        sweep,
         report,
         validate,
     ):

@@ -99,3 +99,7 @@ class OutOfRangeWarning(UserWarning):
 
 class StoppedError(RuntimeError):
     """A run could not go on; what it has is written. The message says why, in one line."""
+
+
+class DivergedError(StoppedError):
+    """A run whose flow has diverged: it would do so again."""

@@ -37,16 +37,34 @@ def hold(number: int) -> bool:
     return True
 
 
+class HeldError(InputError):
+    """Another process writes there."""
+
+
+def is_held(path: Path) -> bool:
+    """Whether a process has the file of a :func:`sole_writer`; one that a killed process left is nobody's."""
+    if fcntl is None:
+        return False
+    try:
+        with path.open("rb") as stream:
+            fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return False
+
+
 @contextmanager
-def sole_writer(folder: Path) -> Iterator[None]:
+def sole_writer(folder: Path, file: str = LOCK) -> Iterator[None]:
     """Within it, no other process may write results into the folder, which must exist.
 
-    Raises :class:`InputError` where one does, naming it.
+    Raises :class:`HeldError` where one does, naming it. ``file`` is what is held: another for another purpose.
     """
     if fcntl is None:
         yield
         return
-    path = folder / LOCK
+    path = folder / file
     stream = _held(path)
     try:
         stream.truncate(0)
@@ -114,7 +132,7 @@ def _held(path: Path, wait: bool = False):
             who = stream.read(200).decode("utf-8", "replace").strip() or "another process"
             stream.close()
             rule = f"{who} writes its results there: wait for it, or choose another folder (--out)"
-            raise InputError(Defect(rule, file=str(path.parent))) from None
+            raise HeldError(Defect(rule, file=str(path.parent))) from None
         except OSError:  # a file system without locks: nothing is known of others
             return stream
         with suppress(OSError):

@@ -51,17 +51,34 @@ def read_case(given: str | Path) -> Case:
     InputError : naming every field that is wrong, and every combination that cannot be run.
     """
     path = find(given)
+    case = case_of(content_of(path), str(path))
+    _check_study(case, path)
+    return case
+
+
+def content_of(given: str | Path) -> dict[str, Any]:
+    """The keys of a case file over those of its base, as they were written; ``name`` is that of the file."""
+    path = find(given)
     content = _content(path)
     content.setdefault("name", path.stem)
-    _with_record(content, str(path))
+    return content
+
+
+def case_of(content: dict[str, Any], file: str, runnable: bool = True) -> Case:
+    """A case of its keys, the conditions of its record filled in.
+
+    Raises :class:`InputError` naming every field of ``file`` that is wrong and, where it is to be ``runnable``,
+    every combination that cannot be run.
+    """
+    content = dict(content)
+    _with_record(content, file)
     try:
         case = Case.model_validate(content)
     except ValidationError as error:
-        raise InputError(*defects_of(error, str(path))) from None
-    found = defects(case, str(path))
+        raise InputError(*defects_of(error, file)) from None
+    found = defects(case, file) if runnable else []
     if found:
         raise InputError(*found)
-    _check_study(case, path)
     return case
 
 
@@ -95,9 +112,7 @@ def _content(path: Path, depth: int = 0) -> dict[str, Any]:
         if error.defects[0].file != base:
             raise  # it is about what stands in the base
         raise InputError(Defect(error.defects[0].rule, file=str(path), field="base", value=base)) from None
-    for key in _OWN:
-        below.pop(key, None)
-    return _over(below, content)
+    return over(below, content)
 
 
 def _named_in(path: Path, name: str) -> Path:
@@ -125,9 +140,9 @@ def _check_study(case: Case, path: Path) -> None:
         raise InputError(Defect(rule, file=str(path), field="study.against", value=against)) from None
 
 
-def _over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
-    """``above`` over ``below``, sections key by key but those that say anew of which kind they are."""
-    merged = dict(below)
+def over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    """``above`` over the keys of a base, sections key by key but those that say anew of which kind they are."""
+    merged = {key: value for key, value in below.items() if key not in _OWN}
     for key, value in above.items():
         both = isinstance(value, dict) and isinstance(below.get(key), dict)
         merged[key] = {**below[key], **value} if both and _KIND.get(key) not in value else value

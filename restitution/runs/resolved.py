@@ -23,7 +23,7 @@ from lbm.fluid.fields import with_image
 from lbm.io import checkpoint as lbm_checkpoint
 from lbm.observers import DivergenceGuard, FieldOutput
 from restitution.cases.case import Case
-from restitution.errors import Defect, InputError, StoppedError
+from restitution.errors import Defect, DivergedError, InputError, StoppedError
 from restitution.runs.record import SolverContact
 from restitution.runs.setup import check_edge, fall_time, set_up
 
@@ -169,7 +169,7 @@ class ResolvedRun:
         steps = _LONGEST_RUN
         if not math.isfinite(self.gap_d):
             self.check()  # names the cell, if the flow is to blame
-            raise StoppedError(f"diverged by step {self.simulation.steps}: the sphere is nowhere")
+            raise DivergedError(f"diverged by step {self.simulation.steps}: the sphere is nowhere")
         if not self.spheres.impacts:
             least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
             speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
@@ -255,7 +255,9 @@ def _in_our_words() -> Iterator[None]:
         yield
     except lbm.InputError as error:
         raise InputError(str(error)) from None
-    except (lbm.DivergenceError, lbm.OutputError) as error:
+    except lbm.DivergenceError as error:
+        raise DivergedError(str(error)) from None
+    except lbm.OutputError as error:
         raise StoppedError(str(error)) from None
 
 

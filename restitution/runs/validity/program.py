@@ -7,7 +7,7 @@ import importlib.util
 from functools import cache
 from pathlib import Path
 
-_APART = ("calibration", "commands", "report", "validation")
+_APART = ("calibration", "campaigns", "commands", "emulation", "report", "validation")
 """Folders that no run depends on; that nothing below imports them is an import contract in pyproject.toml."""
 _DIGITS = 12
 

@@ -1,0 +1,47 @@
+"""A sweep's folder between two drives: which runs are under way, what is tried again, what is no more needed."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from restitution.campaigns.manifest import RETRY, Manifest, line
+from restitution.campaigns.plan import RUNS, Planned
+from restitution.campaigns.run import CLAIM
+from restitution.locks import is_held
+
+_NEEDED_ONCE = ("checkpoint.h5", "trajectory_so_far.csv", CLAIM)
+
+
+def under_way(folder: Path, runs: Iterable[Planned], manifest: Manifest) -> set[str]:
+    """Runs that a process of a machine sharing the folder is at."""
+    open_ones = (r.run for r in runs if not manifest.of(r.run).over)
+    return {run for run in open_ones if is_held(folder / RUNS / run / CLAIM)}
+
+
+def retry(folder: Path, runs: Iterable[Planned], manifest: Manifest) -> int:
+    """Have runs that diverged, failed or were given up tried again; how many those are."""
+    again = [r.run for r in runs if manifest.of(r.run).shown in ("diverged", "failed")]
+    manifest.append(line(run, RETRY) for run in again)
+    return len(again)
+
+
+def clean(folder: Path, runs: Sequence[Planned], manifest: Manifest) -> int:
+    """Remove folders of runs that the plan has no more, and checkpoints of runs that are over; bytes removed.
+
+    What a process is at is left alone.
+    """
+    planned, removed = {r.run: r for r in runs}, 0
+    places = sorted((folder / RUNS).iterdir()) if (folder / RUNS).is_dir() else []
+    for place in places:
+        if is_held(place / CLAIM):
+            continue
+        if place.name not in planned:
+            removed += sum(p.stat().st_size for p in place.rglob("*") if p.is_file())
+            shutil.rmtree(place)
+        elif manifest.of(place.name).over:
+            for path in (p for p in place.iterdir() if p.name in _NEEDED_ONCE or p.name.endswith(".part")):
+                removed += path.stat().st_size
+                path.unlink()
+    return removed

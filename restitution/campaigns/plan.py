@@ -1,0 +1,102 @@
+"""The runs of a sweep, each known by its content: equal content is one run, whichever sweep asks for it.
+
+The key of a run is a hash of the numbers of its case, of the model, of the record it takes data from, and of the
+version of the physics: of the resolved solver the one that probe cases hold (:mod:`restitution.runs.validity`),
+of the point particle, which takes milliseconds, the text of the program. ``plan.jsonl`` in the sweep's folder has
+a line a run with its name and the values of the keys varied, so that what is asked of it needs no other file.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from restitution import __version__, datasets
+from restitution.campaigns.design import Varied
+from restitution.cases.case import Case
+from restitution.errors import Defect, InputError
+from restitution.files import write_folder
+from restitution.runs.record import POINT_PARTICLE
+
+FILE = "plan.jsonl"
+RUNS = "runs"
+"""Folder of the runs' folders."""
+_DIGITS = 12
+_FOR_READERS = {"name", "title", "note", "prediction", "study"}
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A run by its name, which is its content's; ``case`` is None where only the folder was asked."""
+
+    run: str
+    model: str
+    parameters: dict[str, Any]
+    case: Case | None = None
+
+
+def planned(varied: Iterable[Varied], show: Callable[[str], None] | None = None) -> list[Planned]:
+    """The runs that are to be made, none twice, in the order of the design."""
+    found: dict[str, Planned] = {}
+    count = 0
+    for one in varied:
+        count += 1
+        name = f"r{_key(one.case, one.model)}"
+        if name not in found:
+            found[name] = Planned(name, one.model, one.parameters, _plain(one.case, name))
+    if show is not None and count > len(found):
+        show(f"{count - len(found)} of {count} runs are the same as others: each is made once")
+    return list(found.values())
+
+
+def write_plan(folder: Path, runs: Iterable[Planned]) -> None:
+    """Write ``plan.jsonl``, the folder made if need be."""
+    lines = (
+        json.dumps({"run": r.run, "model": r.model, "parameters": r.parameters}, allow_nan=False) for r in runs
+    )
+    write_folder(folder, {FILE: "".join(f"{line}\n" for line in lines)})
+
+
+def read_plan(folder: Path) -> list[Planned]:
+    """The runs of a sweep's folder; raises :class:`InputError` where it is none, or its plan is damaged."""
+    path = folder / FILE
+    if not path.is_file():
+        raise InputError(Defect(f"is no folder of a sweep: it has no {FILE}", file=str(folder)))
+    found = []
+    for row, line in enumerate(path.read_bytes().splitlines(), 1):
+        try:
+            found.append(Planned(**json.loads(line)))
+        except (ValueError, TypeError):
+            rule = "is damaged: give the same 'restitution sweep SWEEP.toml' again, which writes it anew"
+            raise InputError(Defect(rule, file=str(path), row=row)) from None
+    return found
+
+
+def _plain(case: Case, name: str) -> Case:
+    """The case under the run's name, without what is said of its base to readers."""
+    return case.model_copy(update={"name": name, "study": None, "prediction": False})
+
+
+def _key(case: Case, model: str) -> str:
+    point = model == POINT_PARTICLE
+    hidden = _FOR_READERS | ({"numerics"} if point else set())
+    content = case.model_dump(mode="json", exclude=hidden)
+    data = datasets.resource(case.record).hash if case.record is not None else ""
+    parts = json.dumps([content, model, data, __version__, _program(point)], sort_keys=True)
+    return hashlib.sha256(parts.encode()).hexdigest()[:_DIGITS]
+
+
+def _program(point: bool) -> int | str:
+    """What stands for the program: its physics' version where probes hold that, else its text."""
+    from restitution.runs.validity.program import program_hash
+
+    if point:
+        return program_hash()
+    from restitution.runs.validity import physics
+
+    agreed = physics.agreed_version()
+    return program_hash() if agreed is None else agreed

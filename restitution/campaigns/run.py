@@ -1,0 +1,122 @@
+"""One run of a sweep: a plain function of a task that any executor can send anywhere the folder is.
+
+What is there already decides what is done: finished results are kept, a checkpoint is continued, a checkpoint that
+cannot be read is put aside for a start anew. One process at a time has the folder of a run.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from restitution.campaigns.manifest import DIVERGED, FAILED, FINISHED
+from restitution.cases.case import Case
+from restitution.errors import DivergedError, InputError, StoppedError
+from restitution.locks import HeldError, sole_writer
+from restitution.runs.record import POINT_PARTICLE, changed_files, read_record
+
+CLAIM = ".claimed"
+"""File in a run's folder that the process has which is at it."""
+ELSEWHERE, FULL = "elsewhere", "full"
+"""Outcomes that are no end of the run: another process is at it; there is no room to write."""
+_NO_ROOM = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
+
+
+@dataclass(frozen=True)
+class Task:
+    """A run to be made: by ``model``, into ``folder``, by so many ``threads``, None leaving that to the solver."""
+
+    run: str
+    model: str
+    case: Case
+    folder: str
+    threads: int | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What has become of a task; ``seconds`` are those that the run took, all its processes together."""
+
+    run: str
+    state: str
+    message: str = ""
+    seconds: float = 0.0
+    made: bool = True
+    """Whether it was made now; else it was found finished."""
+
+
+def perform(task: Task) -> Outcome:
+    """Make a run, or go on with it; its files are on the disk when this returns."""
+    if task.threads is not None and "numba" not in sys.modules:
+        os.environ["NUMBA_NUM_THREADS"] = str(task.threads)
+    folder = Path(task.folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with sole_writer(folder, CLAIM):
+            found = _finished(folder)
+            if found is not None:
+                return Outcome(task.run, FINISHED, seconds=found, made=False)
+            _make(task, folder)
+            _to_disk(folder)
+            return Outcome(task.run, FINISHED, seconds=_finished(folder) or 0.0)
+    except HeldError as error:
+        return Outcome(task.run, ELSEWHERE, str(error))
+    except DivergedError as error:
+        return Outcome(task.run, DIVERGED, str(error))
+    except (InputError, StoppedError, OSError) as error:
+        message = str(error).replace("\n", "; ")
+        return Outcome(task.run, FULL if any(text in message for text in _NO_ROOM) else FAILED, message)
+
+
+def _finished(folder: Path) -> float | None:
+    """Seconds of the finished run in a folder, if its files are as they were written; None where there is none."""
+    try:
+        record = read_record(folder)
+    except InputError:
+        return None
+    if record is None or not record.files or changed_files(folder, record, record.files):
+        return None
+    return record.seconds
+
+
+def _make(task: Task, folder: Path) -> None:
+    if task.model == POINT_PARTICLE:
+        _predict(task.case, folder)
+        return
+    from restitution.runs.simulate import CHECKPOINT, can_resume, simulate
+
+    if can_resume(folder, task.case):
+        try:
+            simulate(task.case, folder, resume=True, every_step=False)
+            return
+        except HeldError:
+            raise
+        except InputError:  # one that can be told whose it is, but not be read on
+            (folder / CHECKPOINT).unlink(missing_ok=True)
+    simulate(task.case, folder, every_step=False)
+
+
+def _predict(case: Case, folder: Path) -> None:
+    from restitution.bounce import IntegrationError
+    from restitution.runs.point_particle import predict, write
+
+    began = time.perf_counter()
+    try:
+        prediction = predict(case)
+    except IntegrationError as error:
+        raise StoppedError(str(error)) from None
+    write(prediction, folder, time.perf_counter() - began)
+
+
+def _to_disk(folder: Path) -> None:
+    """What was written is on the disk, whatever happens to the machine: files, then their names."""
+    for place in (*(p for p in folder.iterdir() if p.is_file() and p.name != CLAIM), folder):
+        number = os.open(place, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)

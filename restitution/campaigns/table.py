@@ -1,0 +1,98 @@
+"""What came out of a sweep: a row a run, and the impacts of all runs in the schema of the measured ones.
+
+===============  ============================================================================================
+file             content
+===============  ============================================================================================
+``runs.csv``     ``run``, ``state``, ``model``, a column a key varied, in SI, ``track``, where its trajectory
+                 lies from the sweep's folder, ``seconds``, ``attempts``, ``message``
+``impacts.csv``  the impacts, ``record`` being the run: ready for ``restitution fit``
+===============  ============================================================================================
+
+Where pyarrow is installed, both as Parquet beside them, the impacts with model and parameters of their runs.
+"""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from restitution import datasets
+from restitution.campaigns.manifest import FINISHED, Manifest
+from restitution.campaigns.plan import RUNS, Planned, read_plan
+from restitution.files import write_folder
+from restitution.tables.writing import rows_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TABLE, IMPACTS = "runs.csv", "impacts.csv"
+_DIGITS = "%.12g"
+
+
+def write_tables(folder: Path) -> None:
+    """Write both tables of a sweep's folder; raises :class:`InputError` where it is none."""
+    runs, manifest = read_plan(folder), Manifest(folder)
+    names = list(dict.fromkeys(name for run in runs for name in run.parameters))
+    headings = ["run", "state", "model", *names, "track", "seconds", "attempts", "message"]
+    rows = [_row(run, names, manifest) for run in runs]
+    columns = list(datasets.schema("impact").columns)
+    impacts = [
+        row for run in runs if manifest.of(run.run).state == FINISHED for row in _impacts(folder, run, columns)
+    ]
+    contents: dict[str, str | bytes] = {
+        TABLE: rows_text(headings, rows, _DIGITS),
+        IMPACTS: rows_text(columns, impacts),
+    }
+    write_folder(folder, contents)
+    if importlib.util.find_spec("pyarrow") is not None:
+        joined = impacts_of(folder)
+        runs_of(folder).to_parquet(folder / "runs.parquet")
+        joined.to_parquet(folder / "impacts.parquet")
+
+
+def runs_of(folder: Path) -> pd.DataFrame:
+    """The table of runs."""
+    import pandas as pd
+
+    return pd.read_csv(folder / TABLE, dtype={"run": str, "state": str, "message": str, "track": str})
+
+
+def impacts_of(folder: Path) -> pd.DataFrame:
+    """The impacts of all runs, each with model and parameters of its run."""
+    import pandas as pd
+
+    runs = runs_of(folder).drop(columns=["state", "track", "seconds", "attempts", "message"])
+    impacts = pd.read_csv(folder / IMPACTS, dtype={"record": str})
+    return impacts.rename(columns={"record": "run"}).merge(runs, on="run", suffixes=("", "_of_case"))
+
+
+def _row(run: Planned, names: Sequence[str], manifest: Manifest) -> list[Any]:
+    standing = manifest.of(run.run)
+    finished = standing.state == FINISHED
+    return [
+        run.run,
+        standing.shown,
+        run.model,
+        *(_cell(run.parameters.get(name)) for name in names),
+        f"{RUNS}/{run.run}/trajectory.csv" if finished else "",
+        round(standing.seconds, 3) if finished else None,
+        standing.attempts,
+        standing.message,
+    ]
+
+
+def _cell(value: Any) -> Any:
+    """A value of a case in one cell."""
+    if isinstance(value, list | dict | bool):
+        return json.dumps(value)
+    return float(value) if isinstance(value, int) else value
+
+
+def _impacts(folder: Path, run: Planned, columns: Sequence[str]) -> list[list[str]]:
+    with (folder / RUNS / run.run / "impacts.csv").open(newline="", encoding="utf-8") as stream:
+        rows = csv.DictReader(stream)
+        return [[row.get(name, "") for name in columns] for row in rows]
