@@ -5,7 +5,7 @@ file             content
 ===============  ============================================================================================
 ``runs.csv``     ``run``, ``state``, ``model``, a column a key varied, in SI, ``track``, where its trajectory
                  lies from the sweep's folder, ``seconds``, ``attempts``, ``message``
-``impacts.csv``  the impacts, ``record`` being the run: ready for ``restitution fit``
+``impacts.csv``  the impacts under one definition of speed, ``record`` being the run: for ``restitution fit``
 ===============  ============================================================================================
 
 Where pyarrow is installed, both as Parquet beside them, the impacts with model and parameters of their runs.
@@ -24,6 +24,7 @@ from restitution import datasets
 from restitution.campaigns.manifest import FINISHED, Manifest
 from restitution.campaigns.plan import RUNS, Planned, read_plan
 from restitution.files import write_folder
+from restitution.stokes import Speed
 from restitution.tables.writing import rows_text
 
 if TYPE_CHECKING:
@@ -33,15 +34,22 @@ TABLE, IMPACTS = "runs.csv", "impacts.csv"
 _DIGITS = "%.12g"
 
 
-def write_tables(folder: Path) -> None:
-    """Write both tables of a sweep's folder; raises :class:`InputError` where it is none."""
+def write_tables(folder: Path, speed: str = Speed.FAR) -> None:
+    """Write both tables of a sweep's folder, the impacts by one definition of ``speed``.
+
+    Raises :class:`InputError` where it is none.
+    """
     runs, manifest = read_plan(folder), Manifest(folder)
     names = list(dict.fromkeys(name for run in runs for name in run.parameters))
     headings = ["run", "state", "model", *names, "track", "seconds", "attempts", "message"]
     rows = [_row(run, names, manifest) for run in runs]
     columns = list(datasets.schema("impact").columns)
     impacts = [
-        row for run in runs if manifest.of(run.run).state == FINISHED for row in _impacts(folder, run, columns)
+        [row.get(name, "") for name in columns]
+        for run in runs
+        if manifest.of(run.run).state == FINISHED
+        for row in _impacts(folder, run)
+        if row["speed_definition"] == speed
     ]
     contents: dict[str, str | bytes] = {
         TABLE: rows_text(headings, rows, _DIGITS),
@@ -92,7 +100,6 @@ def _cell(value: Any) -> Any:
     return float(value) if isinstance(value, int) else value
 
 
-def _impacts(folder: Path, run: Planned, columns: Sequence[str]) -> list[list[str]]:
+def _impacts(folder: Path, run: Planned) -> list[dict[str, str]]:
     with (folder / RUNS / run.run / "impacts.csv").open(newline="", encoding="utf-8") as stream:
-        rows = csv.DictReader(stream)
-        return [[row.get(name, "") for name in columns] for row in rows]
+        return list(csv.DictReader(stream))

@@ -43,6 +43,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--threads", type=whole, metavar="N", default=1, help="of each process (1)")
     parser.add_argument("--only", metavar="RUN", action="append", help="make this run alone; may be repeated")
     parser.add_argument("--list", action="store_true", help="list the runs that the file asks for; make none")
+    parser.add_argument(
+        "--speed",
+        choices=("far", "contact", "window"),
+        default="far",
+        help="impact speed by which impacts.csv has the impacts (far)",
+    )
     parser.add_argument("--template", metavar="FILE", help="write a sweep with every key explained, instead")
     parser.set_defaults(run=run)
 
@@ -59,7 +65,7 @@ def run(args: argparse.Namespace) -> int | None:
     if args.what in _ASKED:
         if args.folder is None:
             raise InputError(Defect(f"name the sweep's folder: restitution sweep {args.what} DIR", field="DIR"))
-        return _ask(args.what, Path(args.folder))
+        return _ask(args.what, Path(args.folder), args.speed)
     if args.folder is not None:
         known = ", ".join(_ASKED)
         raise InputError(Defect(f"is none of {known}; a sweep's folder is given by --out", field=args.what))
@@ -119,7 +125,7 @@ def _make(args: argparse.Namespace) -> int | None:
     executor.shutdown()
     if args.only:
         return None
-    write_tables(folder)
+    write_tables(folder, args.speed)
     return _end(folder, runs, manifest)
 
 
@@ -134,7 +140,7 @@ def _end(folder: Path, runs: list[Planned], manifest: Manifest) -> int:
     return 0 if set(found) <= {FINISHED} else 2
 
 
-def _ask(what: str, folder: Path) -> int | None:
+def _ask(what: str, folder: Path, speed: str) -> int | None:
     from restitution.campaigns.keeping import clean, retry
     from restitution.campaigns.manifest import Manifest
     from restitution.campaigns.plan import read_plan
@@ -152,7 +158,7 @@ def _ask(what: str, folder: Path) -> int | None:
         removed = clean(folder, runs, manifest)
         show(f"{removed / 1e6:.1f} MB removed")
     else:
-        write_tables(folder)
+        write_tables(folder, speed)
         return _end(folder, runs, manifest)
     return None
 
