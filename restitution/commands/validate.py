@@ -49,7 +49,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--resume", action="store_true", help="go on where a stopped run of the same program was")
     parser.add_argument("--strict", action="store_true", help="a known miss of the truth fails too")
     parser.add_argument(
-        "--baseline", metavar="FILE", help="what to compare with (reports/validate/baseline.json, if it is there)"
+        "--baseline", metavar="FILE", help="what to compare with, or what --bless writes (reports/validate/baseline.json, else the one installed)"
     )
     parser.add_argument(
         "--bless", metavar="REASON", help="renew the baseline with what these rows give now, and say why"
@@ -125,9 +125,9 @@ def _folder(given: str) -> Path:
 def _baseline(args: argparse.Namespace) -> tuple[Path, Baseline | None]:
     """Where the baseline is, and what it holds; None where there is none and none was named."""
     from restitution.errors import Defect, InputError
-    from restitution.validation.baseline import BASELINE, FOLDER, read_baseline
+    from restitution.validation.baseline import BASELINE, FOLDER, read_baseline, shipped
 
-    path = Path(args.baseline or FOLDER / BASELINE)
+    path = Path(args.baseline or (shipped(BASELINE) if args.bless is None else FOLDER / BASELINE))
     if path.is_file():
         return path, read_baseline(path)
     if args.baseline and args.bless is None:
@@ -137,11 +137,12 @@ def _baseline(args: argparse.Namespace) -> tuple[Path, Baseline | None]:
 
 def _spread(args: argparse.Namespace, path: Path, rows: dict[str, Row]) -> dict[str, dict[str, float]]:
     """The measured spread, where the baseline is to be renewed; what forbids that is said before any work."""
-    from restitution.validation.baseline import SPREAD, check_blessing, read_spread
+    from restitution.validation.baseline import SPREAD, check_blessing, read_spread, shipped
 
     if args.bless is None:
         return {}
-    spread = read_spread(path.with_name(SPREAD))
+    own = path.with_name(SPREAD)
+    spread = read_spread(own if own.is_file() else shipped(SPREAD))
     check_blessing(rows, spread, args.bless)
     return spread
 

@@ -12,6 +12,7 @@ import json
 import subprocess
 import time
 from collections.abc import Mapping
+from importlib import metadata
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,13 +23,14 @@ from restitution.conditions import defects_of
 from restitution.errors import Defect, InputError
 from restitution.inputs import read_json
 from restitution.runs.record import digest
+from restitution.runs.validity.program import program_hash
 from restitution.validation.row import Row
 from restitution.validation.scorecard import Result
 from restitution.validation.verdict import Held
 
 BASELINE, SPREAD = "baseline.json", "spread.json"
 FOLDER = Path("reports/validate")
-"""Where a checkout keeps both."""
+"""Where a checkout keeps both; an installed program has them beside this module."""
 VERSION = 1
 SAFETY = 5
 """Tolerances are so many times the measured spread."""
@@ -104,6 +106,12 @@ def read_baseline(path: Path) -> Baseline:
     return baseline
 
 
+def shipped(name: str) -> Path:
+    """Where the program itself keeps :data:`BASELINE` or :data:`SPREAD`: the folder one is in, if it is a checkout."""
+    installed = Path(__file__).with_name(name)
+    return installed if installed.is_file() and not (FOLDER / name).is_file() else FOLDER / name
+
+
 def read_spread(path: Path) -> dict[str, dict[str, float]]:
     """The largest difference measured of each value, by row and label; of ways of running, the worst."""
     content = read_json(path)
@@ -173,13 +181,18 @@ def _g(value: float) -> float:
 
 
 def _committed() -> tuple[str, str]:
-    """The commit of the program, and the first of its files that is not as committed there (or why none is)."""
+    """What program it is, and the first of its files that is not as committed there.
+
+    In a checkout the commit; an installed program is known by its version and its text.
+    """
     root = datasets.folder().parent
     try:
+        if Path(_git(root, "rev-parse", "--show-toplevel")).resolve() != root.resolve():
+            raise FileNotFoundError(root)  # installed within a checkout of something else
         head = _git(root, "rev-parse", "--short=12", "HEAD")
         changed = _git(root, "status", "--porcelain", "--", *_SOURCES)
     except (OSError, subprocess.CalledProcessError):
-        return "", f"{root} is no checkout of git"
+        return f"version {metadata.version('restitution')}, text {program_hash()}", ""
     lines = changed.splitlines()
     return head, f"{lines[0].strip()}{f' and {len(lines) - 1} more' if len(lines) > 1 else ''}" if lines else ""
 

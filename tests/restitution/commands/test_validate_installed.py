@@ -1,0 +1,20 @@
+"""An installed program has its baseline with it, and takes one of its user's own."""
+
+import json
+import os
+import subprocess
+import sys
+
+
+def test_an_installed_program_knows_its_baseline_and_writes_another(installed, tmp_path):
+    def validate(*options):
+        command = [sys.executable, "-m", "restitution", "validate", "--only", "stokes-number", *options]
+        around = os.environ | {"PYTHONPATH": str(installed)}
+        return subprocess.run(command, cwd=tmp_path, env=around, capture_output=True, text=True, check=False)
+
+    assert validate().returncode == 0  # against the baseline that came along
+    written = validate("--baseline", "mine.json", "--bless", "the program as installed")
+    assert written.returncode == 0, written.stderr
+    (row,) = json.loads((tmp_path / "mine.json").read_text())["rows"].values()
+    assert "text" in row["commit"]  # no commit: known by its text
+    assert validate("--baseline", "mine.json").returncode == 0
