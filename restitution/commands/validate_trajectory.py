@@ -68,7 +68,7 @@ def run(args: argparse.Namespace, folder: Path) -> int:
         raise InputError(
             Defect("must be at least 0 and below 1", field="--grid-error", value=f"{args.grid_error:g}")
         )
-    named = args.name or [Path(file).stem for file in args.trajectory]
+    named = args.name or _names(args.trajectory)
     if len(named) != len(args.trajectory):
         rule = f"names {len(named)} of {len(args.trajectory)} trajectories: one each"
         raise InputError(Defect(rule, field="--name"))
@@ -81,6 +81,12 @@ def run(args: argparse.Namespace, folder: Path) -> int:
         show(str(folder / name))
     verdict = trajectory_page.verdict_of(scored)
     return {Verdict.FAIL: FAILED, Verdict.NOT_EVALUATED: NOT_EVALUATED}.get(verdict, 0)
+
+
+def _names(files: list[str]) -> list[str]:
+    """What trajectories are called that were given no name: their files, with their folders where two are alike."""
+    stems = [Path(file).stem for file in files]
+    return stems if len(set(stems)) == len(stems) else [str(Path(file).with_suffix("")) for file in files]
 
 
 def _scored(args: argparse.Namespace, file: str, name: str, case) -> Scored:
