@@ -49,7 +49,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--resume", action="store_true", help="go on where a stopped run of the same program was")
     parser.add_argument("--strict", action="store_true", help="a known miss of the truth fails too")
     parser.add_argument(
-        "--baseline", metavar="FILE", help="what to compare with, or what --bless writes (reports/validate/baseline.json, else the one installed)"
+        "--baseline",
+        metavar="FILE",
+        help="what to compare with, or what --bless writes (reports/validate/baseline.json, else the one installed)",
     )
     parser.add_argument(
         "--bless", metavar="REASON", help="renew the baseline with what these rows give now, and say why"
