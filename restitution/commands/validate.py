@@ -51,7 +51,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--baseline",
         metavar="FILE",
-        help="what to compare with, or what --bless writes (reports/validate/baseline.json, else the one installed)",
+        help="what to compare with, or --bless writes (reports/validate/baseline.json, else the one installed)",
     )
     parser.add_argument(
         "--bless", metavar="REASON", help="renew the baseline with what these rows give now, and say why"

@@ -84,7 +84,7 @@ def run(args: argparse.Namespace, folder: Path) -> int:
 
 
 def _names(files: list[str]) -> list[str]:
-    """What trajectories are called that were given no name: their files, with their folders where two are alike."""
+    """What trajectories without a name are called: their files, with their folders where two are alike."""
     stems = [Path(file).stem for file in files]
     return stems if len(set(stems)) == len(stems) else [str(Path(file).with_suffix("")) for file in files]
 

@@ -107,7 +107,7 @@ def read_baseline(path: Path) -> Baseline:
 
 
 def shipped(name: str) -> Path:
-    """Where the program itself keeps :data:`BASELINE` or :data:`SPREAD`: the folder one is in, if it is a checkout."""
+    """Where the program keeps :data:`BASELINE` or :data:`SPREAD`: the folder one is in, if a checkout."""
     installed = Path(__file__).with_name(name)
     return installed if installed.is_file() and not (FOLDER / name).is_file() else FOLDER / name
 

@@ -42,15 +42,39 @@ def _compiled(text: str, names: tuple[str, ...], wrt: tuple[str, ...], sloped: b
     import sympy
 
     symbols = {name: sympy.Symbol(name, real=True) for name in names}
-    f = symbolic(text, symbols)
+    f = symbolic(text, symbols).replace(sympy.Abs, lambda x: _greatest(x, -x))
+    f = f.replace(sympy.Max, _greatest).replace(sympy.Min, _least)
     outputs = []
     for expression in (f, f.diff(symbols["St"])) if sloped else (f,):
         first = [expression.diff(symbols[a]) for a in wrt]
         second = [first[i].diff(symbols[b]) for i in range(len(wrt)) for b in wrt[: i + 1]]
         outputs += first + second
-    # A kink has no second derivative to speak of.
-    outputs = [x.replace(sympy.DiracDelta, lambda *_: sympy.Integer(0)) for x in outputs]
-    return sympy.lambdify(list(symbols.values()), outputs, modules=["scipy", "numpy"], cse=True)
+    own = {"Choice": lambda d, a, b: np.where(d >= 0, a, b)}
+    return sympy.lambdify(list(symbols.values()), outputs, modules=[own, "scipy", "numpy"], cse=True)
+
+
+@cache
+def _choice() -> Any:
+    """``where(d >= 0, a, b)`` as a function that sympy differentiates; at a kink either side is as good."""
+    import sympy
+
+    class Choice(sympy.Function):
+        """Of ``d``, ``a``, ``b``."""
+
+        def _eval_derivative(self, symbol: Any) -> Any:
+            d, a, b = self.args
+            return Choice(d, a.diff(symbol), b.diff(symbol))
+
+    return Choice
+
+
+def _greatest(first: Any, *rest: Any) -> Any:
+    other = _greatest(*rest) if rest else first
+    return _choice()(first - other, first, other) if rest else first
+
+
+def _least(*parts: Any) -> Any:
+    return -_greatest(*(-x for x in parts))
 
 
 @dataclass(frozen=True)
@@ -87,10 +111,7 @@ class Curvature:
         )
         if likelihood.robust or not symbols or likelihood.observations.shared is not None:
             return None
-        try:
-            return cls(likelihood, extra)
-        except (TypeError, ValueError, NotImplementedError, AttributeError):
-            return None  # sympy has no derivative for it
+        return cls(likelihood, extra)
 
     def __call__(self, values: NDArray) -> Derivatives | None:
         """None where a derivative has no finite value."""
@@ -117,7 +138,7 @@ class Curvature:
         given = lk.by_impact(values)
         out = [
             np.broadcast_to(np.asarray(x, float), n)
-            for x in self.function(lk.law_St, *(given[m] for m in self.names[1:]))
+            for x in self.function(lk.law_St, *(np.broadcast_to(given[m], n) for m in self.names[1:]))
         ]
         places = dict(lk.places)
         member = [np.zeros((n, len(values))) for _ in self.wrt]

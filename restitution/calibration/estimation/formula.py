@@ -207,12 +207,23 @@ def _through(function: Callable, derivative: Callable) -> Callable[[Pair], Pair]
 
 
 def symbolic(text: str, symbols: Mapping[str, Any]) -> Any:
-    """A formula that has passed the grammar, or that of a law, as a sympy expression in ``symbols``."""
+    """A formula that has passed the grammar, or that of a law, as a sympy expression in ``symbols``.
+
+    Raises :class:`InputError` for one with a part that is infinite or undefined whatever the symbols are.
+    """
     import sympy
 
     # Every name in it is bound here: none means a sympy object.
     known = {name: getattr(sympy, own) for name, own in SYMPY.items()}
-    return sympy.sympify(text, locals=known | dict(symbols))
+    try:
+        expression = sympy.sympify(text, locals=known | dict(symbols))
+        finite = not expression.has(sympy.zoo, sympy.nan, sympy.oo, -sympy.oo)
+    except (ValueError, TypeError):  # of what is compared with such a part
+        finite = False
+    if not finite:
+        rule = "has a part that is infinite or undefined for all St, such as a division by zero"
+        raise InputError(Defect(rule, field="formula", value=text))
+    return expression
 
 
 SYMPY = {

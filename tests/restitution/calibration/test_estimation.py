@@ -1,9 +1,12 @@
 """Estimates themselves: exact derivatives, where the search begins, and when its result is doubted."""
 
+import contextlib
 import dataclasses
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy import stats
 
 from restitution.calibration import estimate, model_of, result_of
@@ -18,13 +21,20 @@ from tests.fits import E_DRY, draw, observations, plan
 TRUTHS = {"K": 17.0, "e_dry": 0.9, "scatter": 0.025, "source_offset": 0.02, "a": 30.0, "n": 1.0}
 
 
-@pytest.mark.parametrize("law", ["eq4_exponential", "e_dry*exp(-(a/St)**n) + 0*sin(a)"])
+LAWS = (
+    "eq4_exponential",
+    "e_dry*exp(-(a/St)**n) + 0*sin(a)",
+    "min(0.99, max(abs(n - a/St), 0.05, 0.1)*e_dry, 2 + gamma(n)*abs(0.2 - a*n/St)*erf(tanh(a)))",
+)
+
+
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("limit", [0.0, 0.2])
 def test_exact_derivatives_are_those_of_differences(law, limit):
     """Gradient and Hessian with errors of St, their correlation, scatter, two sources, limits, a prior."""
     o = draw(30, np.random.default_rng(1), scatter=0.03, St_error=0.05, limit=limit, offset=0.03)
     o = dataclasses.replace(o, correlation=np.full(30, -0.3))
-    bounds = {"a": (5.0, 100.0), "n": (0.3, 3.0)} if "**" in law else {}
+    bounds = {} if law == LAWS[0] else {"a": (5.0, 100.0), "n": (0.3, 3.0)}
     likelihood = plan(law, bounds=bounds).likelihood(o)
     values = np.array([TRUTHS[p.name] for p in likelihood.parameters])
     term = Restriction.at(likelihood, values)
@@ -42,6 +52,34 @@ def test_exact_derivatives_are_those_of_differences(law, limit):
             corners = total(values + da + db) - total(values + da - db) - total(values - da + db)
             mixed = (corners + total(values - da - db)) / (4 * da[a] * db[b])
             assert exact.hessian[a, b] == pytest.approx(mixed, abs=5e-5 * scale[a] * scale[b])
+
+
+@pytest.mark.parametrize(
+    "formula", ["e_dry/(a - a)", "max(log(0), a/St)", "St*a*gamma(0)", "min(0/0, a*St)", "a*exp(1/0)/St"]
+)
+def test_a_formula_with_an_infinite_part_is_refused(formula):
+    o = draw(12, np.random.default_rng(1))
+    with pytest.raises(InputError):
+        estimate(plan(formula + " + 0*St", bounds={"a": (5.0, 100.0)}), o)
+
+
+@settings(max_examples=60)
+@given(st.recursive(
+    st.sampled_from(["St", "a", "e_dry", "0.5", "2"]),
+    lambda inner: st.one_of(
+        st.builds("{}({})".format, st.sampled_from(["exp", "sqrt", "tanh", "atan", "erf", "abs", "gamma"]), inner),
+        st.builds("({}{}{})".format, inner, st.sampled_from("+-*/"), inner),
+        st.builds("{}({}, {})".format, st.sampled_from(["min", "max"]), inner, inner),
+    ), max_leaves=6,
+))  # fmt: skip
+def test_every_formula_of_the_grammar_has_derivatives_or_is_refused(formula):
+    """Whatever functions are within one another; none is passed over in silence."""
+    o = draw(6, np.random.default_rng(1), St_error=0.05)
+    likelihood = plan(f"{formula} + a/St", bounds={"a": (5.0, 100.0)}).likelihood(o)
+    values = np.array([TRUTHS.get(p.name, 0.02) for p in likelihood.parameters])
+    with contextlib.suppress(InputError):
+        exact = Curvature.of(likelihood, None)(values)
+        assert exact is None or np.isfinite(exact.hessian).all()
 
 
 def test_the_standard_error_of_a_line_is_the_textbooks():
