@@ -6,11 +6,13 @@ import shutil
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from restitution.campaigns.manifest import RETRY, Manifest, line
+from restitution.campaigns.manifest import FINISHED, RETRY, Manifest, line
 from restitution.campaigns.plan import RUNS, Planned
 from restitution.campaigns.run import CLAIM
 from restitution.locks import is_held
 
+RESULTS = ("trajectory.csv", "impacts.csv", "run.json")
+"""Of every run, whatever its model."""
 _NEEDED_ONCE = ("checkpoint.h5", "trajectory_so_far.csv", CLAIM)
 
 
@@ -21,8 +23,16 @@ def under_way(folder: Path, runs: Iterable[Planned], manifest: Manifest) -> set[
 
 
 def retry(folder: Path, runs: Iterable[Planned], manifest: Manifest) -> int:
-    """Have runs that diverged, failed or were given up tried again; how many those are."""
-    again = [r.run for r in runs if manifest.of(r.run).shown in ("diverged", "failed")]
+    """Have runs that diverged, failed or were given up tried again, and finished ones whose results are gone.
+
+    Returns how many those are.
+    """
+    again = [
+        r.run
+        for r in runs
+        if manifest.of(r.run).shown in ("diverged", "failed")
+        or (manifest.of(r.run).state == FINISHED and _gone(folder / RUNS / r.run))
+    ]
     manifest.append(line(run, RETRY) for run in again)
     return len(again)
 
@@ -45,3 +55,8 @@ def clean(folder: Path, runs: Sequence[Planned], manifest: Manifest) -> int:
                 removed += path.stat().st_size
                 path.unlink()
     return removed
+
+
+def _gone(place: Path) -> bool:
+    """Whether somebody has removed results of a finished run."""
+    return not all((place / name).is_file() for name in RESULTS)

@@ -1,7 +1,8 @@
 """What has become of the runs of a sweep: ``manifest.jsonl``, a checked line an end, only ever appended to.
 
 A line is written once the results it tells of are on the disk. Several drivers may append to one manifest: under a
-lock, and after reading what the others have written, so that no run is finished twice. A line that was cut or
+lock, and after reading what the others have written, so that no run is finished twice, but one that is to be tried
+again, its results being gone. A line that was cut or
 changed does not agree with its check sum: it is left out and said, and its run, if it was finished, is found again
 in its folder.
 """
@@ -113,7 +114,11 @@ class Manifest:
                 if fcntl is not None:
                     fcntl.flock(stream, fcntl.LOCK_EX)
                 self.refresh()
-                text = b"".join(_text(line) for line in lines if self.of(line["run"]).state != FINISHED)
+                text = b"".join(
+                    _text(line)
+                    for line in lines
+                    if line["state"] == RETRY or self.of(line["run"]).state != FINISHED
+                )
                 size = stream.seek(0, os.SEEK_END)
                 if text and size > self._read:  # the last line was cut: what follows begins on a line of its own
                     text = b"\n" + text

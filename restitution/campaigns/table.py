@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 from restitution import datasets
 from restitution.campaigns.manifest import FINISHED, Manifest
 from restitution.campaigns.plan import RUNS, Planned, read_plan
+from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.stokes import Speed
 from restitution.tables.writing import rows_text
@@ -101,5 +102,12 @@ def _cell(value: Any) -> Any:
 
 
 def _impacts(folder: Path, run: Planned) -> list[dict[str, str]]:
-    with (folder / RUNS / run.run / "impacts.csv").open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+    path = folder / RUNS / run.run / "impacts.csv"
+    try:
+        with path.open(newline="", encoding="utf-8") as stream:
+            return list(csv.DictReader(stream))
+    except FileNotFoundError:
+        rule = (
+            f"is gone, of a run that was finished: 'restitution sweep retry {folder}' has the next sweep make it"
+        )
+        raise InputError(Defect(rule, file=str(path))) from None
