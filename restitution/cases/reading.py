@@ -144,8 +144,8 @@ def over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """``above`` over the keys of a base, sections key by key but those that say anew of which kind they are."""
     merged = {key: value for key, value in below.items() if key not in _OWN}
     for key, value in above.items():
-        both = isinstance(value, dict) and isinstance(below.get(key), dict)
-        merged[key] = {**below[key], **value} if both and _KIND.get(key) not in value else value
+        both = isinstance(value, dict) and isinstance(merged.get(key), dict)
+        merged[key] = {**merged[key], **value} if both and _KIND.get(key) not in value else value
     return merged
 
 
