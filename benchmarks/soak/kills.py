@@ -65,8 +65,8 @@ WRITERS = (
 )  # fmt: skip
 OFTEN = """
 import sys
-from restitution.runs import simulate
-simulate.SECONDS_PER_CHECKPOINT = 0.2
+from restitution.runs import stand
+stand.SECONDS_PER_CHECKPOINT = 0.2
 from restitution.cli import main
 sys.exit(main(sys.argv[1:]))
 """

@@ -38,7 +38,7 @@ from lbm.spheres.refill import refill
 from lbm.spheres.sampling import sampled
 from lbm.spheres.surface import REACH, Surfaces
 from lbm.spheres.symmetry import mirrored_axes, of_whole, parts, refuse_asymmetric, refuse_asymmetric_spin
-from lbm.spheres.wall_motion import FRACTION, motion_at_wall
+from lbm.spheres.wall_motion import FRACTION, away, gap_to, motion_at_wall, refuse_met
 
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
@@ -148,6 +148,16 @@ class Spheres(Body):
         self._tracks: list[list[tuple[float, ...]]] = [[] for _ in spheres]
         self._sums = [np.zeros((2 * math.ceil(r + REACH) + 2, 7)) for r in self.radii]
 
+    def take_film_and_contact(self, film: Film | None, contact: Contact | None, grid) -> None:
+        """Go on with another film and contact at the walls of ``grid``, as if they had been there from the start.
+
+        Raises :class:`InputError` where the present ones or the others may have acted in a step that was made.
+        """
+        others = {at: motion_at_wall(film, contact, self.fraction) for at in self._at_walls}
+        for s, track in enumerate(self._tracks):
+            refuse_met(s, self.radii[s], track, grid, self._at_walls, others)
+        self.film, self.contact, self._at_walls = film, contact, others
+
     def track(self, sphere: int = 0) -> dict[str, np.ndarray]:
         """Motion of one sphere, a row a step.
 
@@ -170,7 +180,7 @@ class Spheres(Body):
             if 2 * (r + REACH) > min(grid.shape * np.where(mirrors, 2, 1)):
                 raise InputError(f"sphere {s}: diameter {2 * r:g} cells in a box of {grid.shape}: enlarge the box")
             for face in np.flatnonzero(faces != PERIODIC):
-                gap = _gap(centre, r, face, grid.shape)
+                gap = gap_to(centre, r, face, grid.shape)
                 if gap < 0 and not mirrors[face // 2]:
                     hint = ", which may cut it through the centre only" if faces[face] == SLIP else ""
                     raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {FACES[face]}{hint}")
@@ -210,7 +220,7 @@ class Spheres(Body):
 
     def _move(self, s: int, step: float, grid) -> None:
         walls = [f for f, kind in enumerate(grid.faces) if kind == BOUNCE]
-        gaps = {f: _gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls}
+        gaps = {f: gap_to(self.centres[s], self.radii[s], f, grid.shape) for f in walls}
         nearest = min(gaps.values(), default=math.inf)
         given = None if self._free or self.drive is None else self.drive(step + 1, nearest)
         v = self.velocities[s].copy()
@@ -223,7 +233,7 @@ class Spheres(Body):
             self._free = True
             new = self._free_motion(s, step, v, gaps)
         self.velocities[s] = new
-        nearest = min((_gap(self.centres[s], self.radii[s], f, grid.shape) for f in walls), default=math.nan)
+        nearest = min((gap_to(self.centres[s], self.radii[s], f, grid.shape) for f in walls), default=math.nan)
         row = (step + 1, nearest, *self.centres[s], *new, *self.spins[s], *self.forces[s], *self.torques[s])
         self._tracks[s].append(tuple(float(x) for x in row))
 
@@ -233,16 +243,16 @@ class Spheres(Body):
         weight = (mass - self.volumes[s]) * self.gravity
         force = self.forces[s].copy()
         torque = self.torques[s].copy()
-        near = {f: gap for f, gap in gaps.items() if self._at_walls[s, f].matters(gap, _away(f) * v[f // 2])}
+        near = {f: gap for f, gap in gaps.items() if self._at_walls[s, f].matters(gap, away(f) * v[f // 2])}
         for f, gap in near.items():
             if self.film is not None:
-                push, turn = self.film.along(gap, v, self.spins[s], _away(f) * np.eye(3)[f // 2])
+                push, turn = self.film.along(gap, v, self.spins[s], away(f) * np.eye(3)[f // 2])
                 force, torque = force + push, torque + turn
         new = v + (force + weight) / mass
         self._stop_runaway(s, step, new)
         centre = self.centres[s] + 0.5 * (v + new)
         for f, gap in near.items():
-            axis, sign = f // 2, _away(f)
+            axis, sign = f // 2, away(f)
             after, speed, impacts = self._at_walls[s, f].step(
                 step, gap, sign * v[axis], sign * force[axis], sign * weight[axis], mass
             )
@@ -303,13 +313,3 @@ class Spheres(Body):
         ]
         self._free = bool(state["free"][0])
         self._tracks = [[tuple(float(x) for x in row) for row in track] for track in state["tracks"]]
-
-
-def _away(face: int) -> int:
-    """Sign of the direction away from a face."""
-    return 1 - 2 * (face % 2)
-
-
-def _gap(centre: np.ndarray, radius: float, face: int, shape: tuple[int, int, int]) -> float:
-    axis = face // 2
-    return float(centre[axis] - radius if face % 2 == 0 else shape[axis] - centre[axis] - radius)

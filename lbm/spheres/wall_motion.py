@@ -19,12 +19,14 @@ until sound is gone the sphere has a liquid's force of the jump, Basset's, and t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from lbm.arguments import shown
 from lbm.errors import InputError
+from lbm.faces.records import FACES
+from lbm.fluid.lattice import BOUNCE
 from lbm.spheres.carried import CarriedMotion
 from lbm.spheres.contact import Contact, DryRebound, FilmRebound, Impact, SoftContact
 from lbm.spheres.film import Film
@@ -217,3 +219,27 @@ def motion_at_wall(film: Film | None, contact: Contact | None, fraction: float) 
     if not 0 < fraction <= 0.5:
         raise InputError(f"fraction = {fraction:g}: sub-steps must lie in (0, 0.5] of gap / speed")
     return MOTIONS[type(contact)](film, contact, fraction)
+
+
+def away(face: int) -> int:
+    """Sign of the direction away from a face."""
+    return 1 - 2 * (face % 2)
+
+
+def gap_to(centre: Sequence[float], radius: float, face: int, shape: tuple[int, int, int]) -> float:
+    """From a sphere to a face of the box."""
+    axis = face // 2
+    return float(centre[axis] - radius if face % 2 == 0 else shape[axis] - centre[axis] - radius)
+
+
+def refuse_met(sphere: int, radius: float, track: Sequence[tuple], grid, *motions: Mapping) -> None:
+    """Raise :class:`InputError` where one of the ``motions``, by sphere and face, may have acted on the track."""
+    walls = [face for face, kind in enumerate(grid.faces) if kind == BOUNCE]
+    for step, _, x, y, z, *v in track:
+        for face in walls:
+            gap, speed = gap_to((x, y, z), radius, face, grid.shape), away(face) * v[face // 2]
+            if any(motion[sphere, face].matters(gap, speed) for motion in motions):
+                raise InputError(
+                    f"sphere {sphere} was {gap:.3g} cells from the face {FACES[face]} at step {step:.0f}, where a "
+                    "film or a contact may have acted: another one can be taken before that only"
+                )

@@ -10,19 +10,24 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from restitution.campaigns.fork import Fork, forks
 from restitution.campaigns.manifest import ATTEMPTS, FAILED, FINISHED, LOST, Manifest, line
 from restitution.campaigns.plan import RUNS, Planned
-from restitution.campaigns.run import ELSEWHERE, FULL, Outcome, Task, perform
+from restitution.campaigns.run import ELSEWHERE, REFUSED, STOP, Outcome, Task, perform
 from restitution.errors import StoppedError
+from restitution.runs.record import FILE
+from restitution.runs.validity.program import program_hash
 
 _SECONDS_TO_LOOK = 1.0
 _SECONDS_ELSEWHERE = 2.0
 """After which a run that another process had is asked for again."""
+_SECONDS_TO_APPEAR = 20.0
 _DEATHS = ("KilledWorker", "WorkerLost", "ManagerLost")
 """Names of what Dask and Parsl raise where a run's worker is gone."""
+_DIED = "its worker died or was stopped"
 
 
 @dataclass
@@ -41,8 +46,9 @@ def drive(
     folder: Path,
     executor: Executor,
     *,
-    at_once: int,
+    at_once: Callable[[], int],
     threads: int | None = None,
+    share: bool = True,
     lost: Callable[[], str | None] = lambda: None,
     show: Callable[[Progress], None] = lambda _: None,
     say: Callable[[str], None] = lambda _: None,
@@ -54,8 +60,9 @@ def drive(
     runs : the plan, with the cases.
     folder : of the sweep; workers must see it under the same path.
     executor : anything with the interface of :class:`concurrent.futures.Executor`.
-    at_once : runs that are handed to it at a time.
+    at_once : says how many runs are handed to it at a time, now.
     threads : of each run; None leaves that to the workers.
+    share : whether runs that differ in film and contact alone share their approach.
     lost : says why no more can come of the executor, None as long as that is not so.
     show, say : told of the progress; of what is to be known at once.
 
@@ -63,93 +70,157 @@ def drive(
     ------
     StoppedError : where the sweep cannot go on: no room on the disk, the executor gone. What is finished is kept.
     """
-    folder = folder.resolve()
+    folder, program = folder.resolve(), program_hash()
     manifest = Manifest(folder)
-    todo = deque(run for run in runs if not manifest.of(run.run).over)
-    progress = Progress(len(runs) - len(todo), len(runs))
-    pending: dict[Future, tuple[Planned, float]] = {}
-    elsewhere: list[tuple[float, Planned]] = []
-    while todo or pending or elsewhere:
+    for defect in manifest.defects:
+        say(f"doubt: {defect}")
+    left = [run for run in runs if not manifest.of(run.run).over]
+    shared, alone = forks(left, folder, program, threads) if share else ([], left)
+    if shared:
+        say(f"{len(left) - len(alone)} runs share {len(shared)} approach{'es' if len(shared) > 1 else ''}")
+
+    def task(run: Planned, fork: str | None = None) -> Task:
+        return Task(run.run, run.model, run.case, str(folder / RUNS / run.run), program, threads, fork)
+
+    state = _State(manifest, Progress(len(runs) - len(left), len(runs)), say)
+    state.todo.extend(shared)
+    state.todo.extend(map(task, alone))
+    while state.todo or state.pending or state.elsewhere:
         manifest.refresh()
-        now = time.monotonic()
-        todo.extend(run for since, run in elsewhere if now - since >= _SECONDS_ELSEWHERE)
-        elsewhere = [(since, run) for since, run in elsewhere if now - since < _SECONDS_ELSEWHERE]
-        while todo and len(pending) < at_once:
-            run = todo.popleft()
-            if manifest.of(run.run).over:
-                progress.over += 1  # another driver has done it
-                continue
-            task = Task(run.run, run.model, run.case, str(folder / RUNS / run.run), threads)
-            pending[executor.submit(perform, task)] = run, _reached(folder, run.run)
-        progress.under_way = len(pending)
-        show(progress)
-        if not pending:
-            time.sleep(0.2 if elsewhere else 0.0)
+        state.ask_again()
+        room = at_once()
+        while state.todo and len(state.pending) < room:
+            state.submit(executor)
+        state.progress.under_way = len(state.pending)
+        show(state.progress)
+        if not state.pending:
+            time.sleep(0.2 if state.elsewhere else 0.0)
             continue
-        done, _ = wait(pending, timeout=_SECONDS_TO_LOOK, return_when=FIRST_COMPLETED)
+        done, _ = wait(state.pending, timeout=_SECONDS_TO_LOOK, return_when=FIRST_COMPLETED)
         why = lost()
         if why is not None:
             raise StoppedError(why)
-        ends: list[tuple[Planned, dict]] = []
-        stop = None
-        for future in done:
-            run, before = pending.pop(future)
-            outcome = _outcome(future, run, _reached(folder, run.run) > before)
-            if isinstance(outcome, dict):
-                ends.append((run, outcome))
-            elif outcome.state == ELSEWHERE:
-                elsewhere.append((time.monotonic(), run))
-            elif outcome.state == FULL:
-                stop = outcome.message
-            else:
-                ends.append((run, line(run.run, outcome.state, outcome.message, seconds=outcome.seconds)))
-                progress.made += outcome.made
-                progress.seconds += outcome.seconds * outcome.made
-        manifest.append(entry for _, entry in ends)
-        for run, entry in ends:
-            standing = manifest.of(run.run)
-            if standing.over:
-                progress.over += 1
-            else:
-                todo.append(run)
-            if entry["state"] != FINISHED:
-                say(_said(entry, standing.over))
-        if stop is not None:
-            raise StoppedError(
-                f"{stop}. The runs that are finished are kept; make room and give the same command again"
-            )
-    show(progress)
+        state.take(done, task)
+    show(state.progress)
     return manifest
 
 
-def _outcome(future: Future, run: Planned, further: bool) -> Outcome | dict:
-    """What a future says of its run, or a line of the manifest where it says nothing."""
+class _State:
+    """What is to be done, what is under way, and what has come of it."""
+
+    def __init__(self, manifest: Manifest, progress: Progress, say: Callable[[str], None]):
+        self.manifest, self.progress, self.say = manifest, progress, say
+        self.todo: deque[Task | Fork] = deque()
+        self.pending: dict[Future, tuple[Task | Fork, float]] = {}
+        self.elsewhere: list[tuple[float, Task | Fork]] = []
+
+    def ask_again(self) -> None:
+        """Put what other processes had a while ago into the queue again."""
+        now = time.monotonic()
+        self.todo.extend(job for since, job in self.elsewhere if now - since >= _SECONDS_ELSEWHERE)
+        self.elsewhere = [(since, job) for since, job in self.elsewhere if now - since < _SECONDS_ELSEWHERE]
+
+    def submit(self, executor: Executor) -> None:
+        """Hand the next job over, if another driver has not done it."""
+        job = self.todo.popleft()
+        if isinstance(job, Task) and self.manifest.of(job.run).over:
+            self.progress.over += 1
+            return
+        asked = job.approach if isinstance(job, Fork) else job
+        self.pending[executor.submit(perform, asked)] = job, _reached(asked.folder)
+
+    def take(self, done: Iterable[Future], task: Callable[..., Task]) -> None:
+        """Account for jobs that have ended; raises :class:`StoppedError` where none could go on."""
+        ends: list[tuple[Task, dict]] = []
+        stop = None
+        for future in done:
+            job, before = self.pending.pop(future)
+            asked = job.approach if isinstance(job, Fork) else job
+            outcome = _outcome(future, asked.run)
+            if outcome.state == ELSEWHERE:
+                self.elsewhere.append((time.monotonic(), job))
+            elif outcome.state == STOP:
+                stop = outcome.message
+            elif isinstance(job, Fork):
+                self._branch(job, outcome, task)
+            elif outcome.state == FINISHED and not _seen(job.folder):
+                stop = f"{job.run} is finished, says its worker, but is not in {job.folder}: do they share it?"
+            else:
+                ends.append((job, _line(outcome, _reached(job.folder) > before)))
+                self.progress.made += outcome.made
+                self.progress.seconds += outcome.seconds * outcome.made
+        self.manifest.append(entry for _, entry in ends)
+        for job, entry in ends:
+            over = self.manifest.of(job.run).over
+            if over:
+                self.progress.over += 1
+            else:
+                self.todo.append(job)
+            if entry["state"] != FINISHED:
+                self.say(_said(entry, over))
+        if stop is not None:
+            raise StoppedError(f"{stop}. What is finished is kept: mend that, and give the same command again")
+
+    def _branch(self, fork: Fork, outcome: Outcome, task: Callable[..., Task]) -> None:
+        """Let the runs of an approach go on from it, or from their start where there is none."""
+        if outcome.state == LOST and fork.deaths + 1 < ATTEMPTS:
+            self.todo.append(replace(fork, deaths=fork.deaths + 1))
+            return
+        there = outcome.state == FINISHED
+        if not there:
+            self.say(f"the approach of {len(fork.runs)} runs: {outcome.message}; each is run from its start")
+        self.todo.extendleft(task(run, str(fork.checkpoint) if there else None) for run in reversed(fork.runs))
+
+
+def _outcome(future: Future, run: str) -> Outcome:
+    """What a future says of its run; what it raises is the run's end, or its worker's."""
     try:
         return future.result()
-    except (BrokenExecutor, CancelledError) as error:
-        return _death(run, error, further)
+    except (BrokenExecutor, CancelledError):
+        return Outcome(run, LOST, _DIED)
     except Exception as error:  # noqa: BLE001  whatever a run raises is its end, not the sweep's
         if type(error).__name__ in _DEATHS:
-            return _death(run, error, further)
-        return line(run.run, FAILED, f"{type(error).__name__}: {error}")
+            return Outcome(run, LOST, _DIED)
+        return Outcome(run, FAILED, f"{type(error).__name__}: {error}")
 
 
-def _death(run: Planned, error: BaseException, further: bool) -> dict:
-    return line(run.run, LOST, "its worker died or was stopped", further=further)
+def _line(outcome: Outcome, further: bool) -> dict:
+    """An outcome in the words of the manifest."""
+    if outcome.state == FINISHED:
+        return line(outcome.run, FINISHED, seconds=outcome.seconds)
+    if outcome.state == LOST:
+        return line(outcome.run, LOST, outcome.message, further=further)
+    if outcome.state == REFUSED:
+        return line(outcome.run, FAILED, outcome.message, final=True)
+    return line(outcome.run, outcome.state, outcome.message)
 
 
 def _said(entry: dict, over: bool) -> str:
     if entry["state"] == LOST:
         end = f"{ATTEMPTS} times without getting further: given up" if over else "goes on elsewhere"
         return f"{entry['run']}: {entry['message']}; {end}"
-    end = "" if not over else f"; given up after {ATTEMPTS} attempts" if entry["state"] == FAILED else ""
+    tried = over and entry["state"] == FAILED and not entry.get("final")
+    end = f"; given up after {ATTEMPTS} attempts" if tried else ""
     return f"{entry['run']}: {entry['state']}: {entry['message']}{end}"
 
 
-def _reached(folder: Path, run: str) -> float:
-    """When the run last left a checkpoint; 0 where there is none."""
+def _seen(place: str) -> bool:
+    """Whether a run's results are here; a network's file system may take a while to show them."""
+    folder = Path(place)
+    until = time.monotonic() + _SECONDS_TO_APPEAR
+    while not (folder / FILE).exists():
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.2)
+        if folder.is_dir():
+            list(folder.iterdir())  # reading the folder makes the file system look again
+    return True
+
+
+def _reached(place: str) -> float:
+    """When a run last left a checkpoint; 0 where there is none."""
     try:
-        return (folder / RUNS / run / "checkpoint.h5").stat().st_mtime
+        return (Path(place) / "checkpoint.h5").stat().st_mtime
     except OSError:
         return 0.0
 

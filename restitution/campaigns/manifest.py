@@ -62,7 +62,7 @@ class Standing:
         self.state, self.message = line["state"], line.get("message", "")
         self.seconds = line.get("seconds", self.seconds)
         if self.state == FAILED:
-            self.attempts += 1
+            self.attempts = ATTEMPTS if line.get("final") else self.attempts + 1
         elif self.state == LOST:
             self.deaths = 0 if line.get("further") else self.deaths + 1
         elif self.state == RETRY:

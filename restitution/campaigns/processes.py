@@ -11,6 +11,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -77,6 +78,7 @@ def _begin(threads: int, parent: int) -> None:
     with suppress(OSError, AttributeError):
         os.setpgid(0, 0)  # the terminal's Ctrl-C is for the process that started this one
     signal.signal(signal.SIGINT, _stop)
+    sys.unraisablehook = _unraised
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
 
 
@@ -96,6 +98,14 @@ def _stop(*_: object) -> None:
     """What interrupts a task; between two there is nothing to be stopped."""
     if _within.is_set():
         raise KeyboardInterrupt
+
+
+def _unraised(what: Any) -> None:
+    """An interrupt that came while something was being freed is lost there: it is sent once more."""
+    if issubclass(what.exc_type, KeyboardInterrupt):
+        threading.Timer(_SECONDS_TO_LOOK / 10, os.kill, (os.getpid(), signal.SIGINT)).start()
+    else:
+        sys.__unraisablehook__(what)
 
 
 def _end_with(parent: int) -> None:

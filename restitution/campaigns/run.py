@@ -10,6 +10,7 @@ import errno
 import os
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,12 +19,13 @@ from restitution.cases.case import Case
 from restitution.errors import DivergedError, InputError, StoppedError
 from restitution.locks import HeldError, sole_writer
 from restitution.runs.record import POINT_PARTICLE, changed_files, read_record
+from restitution.runs.validity.program import program_hash
 
 CLAIM = ".claimed"
 """File in a run's folder that the process has which is at it."""
-ELSEWHERE, FULL = "elsewhere", "full"
-"""Outcomes that are no end of the run: another process is at it; there is no room to write."""
-_NO_ROOM = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
+ELSEWHERE, STOP, REFUSED = "elsewhere", "stop", "refused"
+"""Outcomes beside the manifest's: another process is at it; no run could go on here; the case cannot be run."""
+_NO_ROOM = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG))
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,22 @@ class Task:
     model: str
     case: Case
     folder: str
+    program: str
+    """Hash of the driver's program: results of another one would not be what the plan's keys stand for."""
+    threads: int | None = None
+    fork: str | None = None
+    """Checkpoint of an approach that the run may begin from."""
+
+
+@dataclass(frozen=True)
+class Approach:
+    """An approach to be run once: that of ``case``, to above the ``edge`` in diameters; ``run`` is its name."""
+
+    run: str
+    case: Case
+    edge: float
+    folder: str
+    program: str
     threads: int | None = None
 
 
@@ -49,14 +67,19 @@ class Outcome:
     """Whether it was made now; else it was found finished."""
 
 
-def perform(task: Task) -> Outcome:
-    """Make a run, or go on with it; its files are on the disk when this returns."""
+def perform(task: Task | Approach) -> Outcome:
+    """Make a run or an approach, or go on with it; its files are on the disk when this returns."""
     if task.threads is not None and "numba" not in sys.modules:
         os.environ["NUMBA_NUM_THREADS"] = str(task.threads)
+    if task.program != program_hash():
+        rule = f"the worker's program is {program_hash()}, the driver's {task.program}: they must be the same"
+        return Outcome(task.run, STOP, rule)
     folder = Path(task.folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with sole_writer(folder, CLAIM):
+            if isinstance(task, Approach):
+                return _approach(task, folder)
             found = _finished(folder)
             if found is not None:
                 return Outcome(task.run, FINISHED, seconds=found, made=False)
@@ -69,7 +92,9 @@ def perform(task: Task) -> Outcome:
         return Outcome(task.run, DIVERGED, str(error))
     except (InputError, StoppedError, OSError) as error:
         message = str(error).replace("\n", "; ")
-        return Outcome(task.run, FULL if any(text in message for text in _NO_ROOM) else FAILED, message)
+        if any(text in message for text in _NO_ROOM):
+            return Outcome(task.run, STOP, message)
+        return Outcome(task.run, REFUSED if isinstance(error, InputError) else FAILED, message)
 
 
 def _finished(folder: Path) -> float | None:
@@ -97,7 +122,21 @@ def _make(task: Task, folder: Path) -> None:
             raise
         except InputError:  # one that can be told whose it is, but not be read on
             (folder / CHECKPOINT).unlink(missing_ok=True)
+    if task.fork is not None:
+        with suppress(InputError):  # the whole way gives the same
+            simulate(task.case, folder, every_step=False, fork=Path(task.fork))
+            return
     simulate(task.case, folder, every_step=False)
+
+
+def _approach(task: Approach, folder: Path) -> Outcome:
+    from restitution.runs.approach import run_approach
+
+    began = time.perf_counter()
+    if not run_approach(task.case, task.edge, folder):
+        return Outcome(task.run, FAILED, "released too near to the wall")
+    _to_disk(folder)
+    return Outcome(task.run, FINISHED, seconds=time.perf_counter() - began)
 
 
 def _predict(case: Case, folder: Path) -> None:

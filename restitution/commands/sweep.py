@@ -41,6 +41,21 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--processes", type=whole, metavar="N", help="of this machine (as many as its cores and memory allow)"
     )
     parser.add_argument("--threads", type=whole, metavar="N", default=1, help="of each process (1)")
+    parser.add_argument(
+        "--scheduler",
+        metavar="WHERE",
+        help="have Dask make the runs: the tcp://HOST:PORT of its scheduler, or slurm:FILE with the keywords of "
+        "dask_jobqueue.SLURMCluster, and jobs, in TOML",
+    )
+    parser.add_argument(
+        "--dry-run", action="store_true", help="print the script of a job of slurm:FILE; submit none"
+    )
+    parser.add_argument(
+        "--no-forks",
+        action="store_true",
+        help="run each from its start, also where runs differ only in what acts from the film on (film, contact, "
+        "e_dry, roughness) and could begin from one approach; the results are the same",
+    )
     parser.add_argument("--only", metavar="RUN", action="append", help="make this run alone; may be repeated")
     parser.add_argument("--list", action="store_true", help="list the runs that the file asks for; make none")
     parser.add_argument(
@@ -62,6 +77,9 @@ def run(args: argparse.Namespace) -> int | None:
         return None
     if args.what is None:
         raise InputError("name a sweep's file ('restitution sweep --template sweep.toml' writes one)")
+    for name, value in (("--processes", args.processes), ("--threads", args.threads)):
+        if value == 0:
+            raise InputError(Defect("must be 1 or above", field=name, value="0"))
     if args.what in _ASKED:
         if args.folder is None:
             raise InputError(Defect(f"name the sweep's folder: restitution sweep {args.what} DIR", field="DIR"))
@@ -74,59 +92,52 @@ def run(args: argparse.Namespace) -> int | None:
 
 def _make(args: argparse.Namespace) -> int | None:
     from restitution.campaigns.design import Sweep
-    from restitution.campaigns.driver import drive
-    from restitution.campaigns.plan import planned, write_plan
-    from restitution.campaigns.processes import LocalProcesses
+    from restitution.campaigns.plan import planned, read_plan
     from restitution.campaigns.progress import SweepProgress
-    from restitution.campaigns.share import shared_out
-    from restitution.campaigns.table import write_tables
-    from restitution.errors import Defect, InputError, StoppedError
-    from restitution.files import check_folder
+    from restitution.campaigns.sweep import sweep
+    from restitution.errors import StoppedError
 
-    sweep = Sweep(args.what)
-    runs = planned(sweep.cases(), _say)
     if args.list:
-        _list(runs)
+        _list(planned(Sweep(args.what).cases(), _say))
         return None
-    if args.only:
-        unknown = set(args.only) - {r.run for r in runs}
-        if unknown:
-            raise InputError(
-                Defect("is no run of this sweep (--list names them)", field="--only", value=min(unknown))
-            )
+    if args.dry_run:
+        _dry_run(args.scheduler)
+        return None
     folder = Path(args.out or Path(args.what).stem)
-    check_folder(folder)
-    write_plan(folder, runs)
-    wanted = [r for r in runs if not args.only or r.run in args.only]
-    processes, told = shared_out(wanted, args.processes, args.threads)
-    _say(f"{len(wanted)} runs in {folder}: {told}")
-    executor = LocalProcesses(processes, args.threads)
     try:
         with SweepProgress(folder.name) as progress:
-            manifest = drive(
-                wanted,
+            manifest = sweep(
+                args.what,
                 folder,
-                executor,
-                at_once=processes,
+                scheduler=args.scheduler,
+                processes=args.processes,
                 threads=args.threads,
+                only=args.only or (),
+                share=not args.no_forks,
                 show=progress.update,
                 say=progress.say,
             )
     except KeyboardInterrupt:
-        executor.interrupt()
-        executor.shutdown(cancel_futures=True)
         _say(f"stopped; continue with: restitution sweep {args.what} --out {folder}")
         raise
     except StoppedError as error:
-        executor.interrupt()
-        executor.shutdown(cancel_futures=True)
         _say(f"error: {error}")
         return 2
-    executor.shutdown()
+    runs = read_plan(folder)
     if args.only:
-        return None
-    write_tables(folder, args.speed)
+        return _end(folder, [r for r in runs if r.run in args.only], manifest)
     return _end(folder, runs, manifest)
+
+
+def _dry_run(scheduler: str | None) -> None:
+    from restitution.campaigns.cluster import SLURM, slurm_cluster
+    from restitution.errors import Defect, InputError
+
+    if scheduler is None or not scheduler.startswith(SLURM):
+        rule = "prints the script of a job: give --scheduler slurm:FILE with it"
+        raise InputError(Defect(rule, field="--dry-run"))
+    with slurm_cluster(scheduler.removeprefix(SLURM)) as (cluster, jobs):
+        show(f"# {jobs} of these\n{cluster.job_script()}")
 
 
 def _end(folder: Path, runs: list[Planned], manifest: Manifest) -> int:
@@ -136,7 +147,8 @@ def _end(folder: Path, runs: list[Planned], manifest: Manifest) -> int:
     from restitution.campaigns.table import IMPACTS, TABLE
 
     found = counts(manifest, runs)
-    show(f"{_counted(found)}; {folder / TABLE}, {folder / IMPACTS}")
+    tables = f"; {folder / TABLE}, {folder / IMPACTS}" if (folder / TABLE).exists() else ""
+    show(_counted(found) + tables)
     return 0 if set(found) <= {FINISHED} else 2
 
 

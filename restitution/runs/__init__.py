@@ -2,9 +2,10 @@
 
 A run: :mod:`~restitution.runs.closures` and :mod:`~restitution.runs.measured` (laws and records as the solver
 takes them), :mod:`~restitution.runs.setup` (all that it is given), :mod:`~restitution.runs.resolved` (the flow
-resolved), :mod:`~restitution.runs.simulate` (from a case to its files), :mod:`~restitution.runs.results` and
-:mod:`~restitution.runs.filmed` (tables), :mod:`~restitution.runs.record` (``run.json``);
-:mod:`~restitution.runs.progress` and :mod:`~restitution.runs.flow_pictures` look on.
+resolved), :mod:`~restitution.runs.simulate` (from a case to its files), :mod:`~restitution.runs.stand`
+(checkpoints), :mod:`~restitution.runs.approach` (the way to the film, which several cases may share),
+:mod:`~restitution.runs.results` and :mod:`~restitution.runs.filmed` (tables), :mod:`~restitution.runs.record`
+(``run.json``); :mod:`~restitution.runs.progress` and :mod:`~restitution.runs.flow_pictures` look on.
 
 Whether a kept run (:mod:`~restitution.runs.kept`) still holds is the question of :mod:`restitution.runs.validity`.
 

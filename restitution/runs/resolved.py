@@ -11,6 +11,7 @@ import math
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -193,6 +194,22 @@ class ResolvedRun:
         if _STOP not in beside:
             raise InputError(Defect("is no checkpoint of a run", file=str(path)))
         self._stop, self._unguarded = map(int, beside.pop(_STOP))
+        return beside
+
+    def leave_walls_out(self) -> None:
+        """Begin without film and contact, as an approach that several cases share does."""
+        self.simulation, self.spheres = replace(self.setup, film=None, contact=None).build()
+
+    def fork(self, path: Path, approach: str) -> dict[str, np.ndarray]:
+        """Begin from the checkpoint of an ``approach``; what was saved beside.
+
+        Raises :class:`InputError` for one of another approach, or one in which film or contact of this case would
+        have acted.
+        """
+        self.leave_walls_out()
+        beside = self.restore(path, approach)
+        with _in_our_words():
+            self.spheres.take_film_and_contact(self.setup.film, self.setup.contact, self.simulation.lattice.grid)
         return beside
 
     def snapshots(self, folder: Path) -> FieldOutput:

@@ -58,6 +58,13 @@ class Setup:
         """Steps between two rows of a trajectory."""
         return max(1, round(OUTPUT_D * self.flow.length / self.flow.speed))
 
+    @property
+    def edge_d(self) -> float:
+        """Gap in diameters from which on film or contact act."""
+        film = 0.0 if self.film is None else max(self.film.cut_off, self.film.floor)
+        contact = self.contact.edge if isinstance(self.contact, FilmRebound) else 0.0
+        return max(film, contact) / self.flow.length
+
     def describe(self) -> dict[str, Any]:
         """What is told, by name: numbers and words, functions by what they give at some arguments."""
         return {

@@ -18,28 +18,20 @@ whole or not at all; two processes do not write to one folder.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 
-import numpy as np
-
 from restitution.cases.case import Case
-from restitution.errors import Defect, InputError, StoppedError
-from restitution.files import write_folder, write_whole
+from restitution.errors import StoppedError
+from restitution.files import write_folder
 from restitution.locks import sole_writer
-from restitution.runs.flow_pictures import FlowFrames
 from restitution.runs.progress import RunProgress
 from restitution.runs.resolved import ResolvedRun, owner_of
-from restitution.runs.results import results, trajectory_of
+from restitution.runs.results import results
+from restitution.runs.stand import CHECKPOINT, SO_FAR, Stand
 from restitution.runs.validity import physics
-from restitution.runs.validity.key import checkpoint_key
-from restitution.tables.writing import table_text
+from restitution.runs.validity.key import approach_key, checkpoint_key
 
-SECONDS_PER_CHECKPOINT = 30.0
-CHECKPOINT, SO_FAR = "checkpoint.h5", "trajectory_so_far.csv"
-_SECONDS = "seconds"
 KEPT = ("trajectory.csv", "velocity.csv", "impacts.csv", "run.json", "flow.npz")
 
 
@@ -48,6 +40,7 @@ def simulate(
     folder: str | Path,
     *,
     resume: bool = False,
+    fork: Path | None = None,
     snapshots: bool = False,
     every_step: bool = True,
     show: Callable[[str], None] | None = None,
@@ -60,6 +53,8 @@ def simulate(
     case : what is run; it needs ``[numerics]``.
     folder : where the results go; made if need be.
     resume : continue from the checkpoint in the folder, if it has one; that of another run is refused.
+    fork : the checkpoint of an approach (:mod:`restitution.runs.approach`) that a run with nothing of its own to
+        continue begins from, in place of the release; that of another approach is refused.
     snapshots : write the flow for ParaView as well, every ``run.snapshot_interval``.
     every_step : write ``motion.csv`` too, a row a step.
     show : called with each line to be said; None for silence.
@@ -79,12 +74,15 @@ def simulate(
         say(f"warning: {warning}")
     write_folder(folder, {})
     with sole_writer(folder):
-        progress = _Stand(run, key, folder)
+        progress = Stand(run, key, folder / CHECKPOINT)
         if resume and (folder / CHECKPOINT).exists():
             progress.restore()
             say(f"continues at t = {run.time_s:.4g} s")
         else:
-            if resume:
+            if fork is not None:
+                progress.fork(fork, approach_key(case))
+                say(f"starts from {fork} at t = {run.time_s:.4g} s")
+            elif resume:
                 say(f"{folder} has no checkpoint: starts anew")
             (folder / CHECKPOINT).unlink(missing_ok=True)  # of a run that is given up
         try:
@@ -95,8 +93,7 @@ def simulate(
                     run.advance(observers)
                     progress.frames.look(run)
                     shown.update(run.simulation.steps - before, run.time_s, run.expected_s, run.gap_d)
-                    if time.perf_counter() - progress.saved > SECONDS_PER_CHECKPOINT:
-                        progress.save()
+                    progress.save_now_and_then()
             progress.save()  # whatever becomes of the tables, the run need not be made again
             write_folder(folder, results(run, progress.frames, progress.seconds, every_step))
         except BaseException:
@@ -114,55 +111,3 @@ def simulate(
 def can_resume(folder: Path, case: Case) -> bool:
     """Whether the folder has a checkpoint of this very run."""
     return (folder / CHECKPOINT).exists() and owner_of(folder / CHECKPOINT) == checkpoint_key(case)
-
-
-class _Stand:
-    """How far a run has come: its state and pictures, and the seconds that it took, all in one checkpoint."""
-
-    def __init__(self, run: ResolvedRun, key: str, folder: Path):
-        self.run, self.key, self.folder = run, key, folder
-        self.frames = FlowFrames()
-        self._before = 0.0
-        self._began = self.saved = time.perf_counter()
-        self._saved_at = -1
-
-    @property
-    def seconds(self) -> float:
-        """What the run has taken so far, all processes together."""
-        return self._before + time.perf_counter() - self._began
-
-    def save(self) -> None:
-        """Write the checkpoint."""
-        self.saved = time.perf_counter()
-        if self.run.simulation.steps == self._saved_at:
-            return
-        beside = {_SECONDS: np.array([round(self.seconds, 1)]), **self.frames.arrays()}
-        self.run.save(self.folder / CHECKPOINT, self.key, beside)
-        self._saved_at = self.run.simulation.steps
-
-    def restore(self) -> None:
-        """Take up the checkpoint in the folder; raises :class:`InputError` for one of another run."""
-        path = self.folder / CHECKPOINT
-        if owner_of(path) not in (None, self.key):
-            rule = "is of another case or of another version of the code: leave --resume out to start anew"
-            raise InputError(Defect(rule, file=str(path)))
-        beside = self.run.restore(path, self.key)
-        try:
-            self._before = float(beside[_SECONDS][0])
-            self.frames.take(beside)
-            if self.run.is_due:  # stopped after the last step of a block, before it was looked at
-                self.frames.look(self.run)
-        except (KeyError, IndexError, ValueError, TypeError):
-            rule = "is damaged: the pictures of the flow are not those of a run; start anew"
-            raise InputError(Defect(rule, file=str(path))) from None
-
-    def leave(self) -> None:
-        """What a stopped run leaves: trajectory so far and, where its state is sound, a checkpoint."""
-        if self.run.simulation.steps == 0:
-            return
-        with suppress(StoppedError, InputError):  # the last sound one stays
-            self.run.check()
-            self.save()
-        table = trajectory_of(self.run)
-        with suppress(InputError):  # a full disk: the error that stopped the run is the one to show
-            write_whole(self.folder / SO_FAR, table_text(table[np.isfinite(table).all(axis=1)]))

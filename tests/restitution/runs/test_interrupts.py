@@ -14,7 +14,7 @@ import pytest
 from restitution import cases
 from restitution.errors import InputError, StoppedError
 from restitution.locks import LOCK, sole_writer
-from restitution.runs import resolved, simulate
+from restitution.runs import resolved, simulate, stand
 from restitution.runs.kept import read_run
 from restitution.runs.record import read_record
 
@@ -104,10 +104,10 @@ class Killed(BaseException):
 @pytest.mark.parametrize("from_contact", range(-AROUND // 2, AROUND // 2))
 def test_a_kill_at_any_step_about_the_contact_changes_no_file(from_contact, case, whole, tmp_path, monkeypatch):
     """With a checkpoint after every block of steps, of which the last that is whole is gone on from."""
-    monkeypatch.setattr(simulate, "SECONDS_PER_CHECKPOINT", 0.0)
+    monkeypatch.setattr(stand, "SECONDS_PER_CHECKPOINT", 0.0)
 
     def kill():
-        monkeypatch.setattr(simulate._Stand, "leave", lambda _: None)
+        monkeypatch.setattr(stand.Stand, "leave", lambda _: None)
         raise Killed
 
     with pytest.raises(Killed):

@@ -1,0 +1,103 @@
+"""What a sweep costs beside its runs, what a second process gains, what shared approaches save, how fast it lists.
+
+Runs are of the 3 mm sphere of Gondret et al. at 6 cells a diameter, single-threaded; the load of the machine is
+printed beside every figure, for times are by the clock. A sweep's overhead is what its wall time has beside the
+seconds that its runs state: start of the processes, set-up, writing, manifest.
+
+    python -m benchmarks.sweeps            # all of it, some minutes
+    python -m benchmarks.sweeps listing    # overhead, two, forks, listing: parts of it
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from restitution.campaigns.manifest import FINISHED, Manifest, line
+from restitution.campaigns.plan import Planned, read_plan, write_plan
+from restitution.campaigns.sweep import sweep
+from restitution.campaigns.table import runs_of
+from restitution.runs.record import RESOLVED
+
+CASE = """
+base = "gondret_st152_10"
+[case]
+release = {{ kind = "drive", gap_d = {gap}, speed = 0.3, ramp = 0.0005 }}
+numerics.cells_per_diameter = 6
+numerics.lattice_speed = {speed}
+numerics.width_d = {width}
+numerics.height_d = {height}
+run.after_contact = {span}
+[vary]
+film.tension = ["50 kPa", 101325]
+sphere.e_dry = [0.8, 0.9, 0.97]
+"""
+LONG = {"gap": 1.0, "speed": 0.05, "width": 4.0, "height": 6.0, "span": 0.15}
+APPROACH = {"gap": 8.0, "speed": 0.05, "width": 4.0, "height": 11.0, "span": 0.005}
+"""A study of the first rebound: the way to the wall is 8 d, the record after the contact some 0.5 d."""
+ENTRIES = 100_000
+
+
+def made(numbers: dict, processes: int, share: bool) -> tuple[float, float]:
+    """Wall time in s of a sweep of six, and the seconds that its runs state."""
+    with tempfile.TemporaryDirectory() as place:
+        file = Path(place) / "sweep.toml"
+        file.write_text(CASE.format(**numbers))
+        began = time.perf_counter()
+        sweep(file, Path(place) / "out", processes=processes, share=share)
+        wall = time.perf_counter() - began
+        return wall, float(runs_of(Path(place) / "out").seconds.sum())
+
+
+def load() -> str:
+    return f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
+
+
+def overhead() -> None:
+    wall, runs = made(LONG, 1, share=False)
+    print(
+        f"overhead: six runs of {runs / 6:.1f} s take {wall:.1f} s, {100 * (wall / runs - 1):.2f} % more; {load()}"
+    )
+
+
+def two() -> None:
+    pairs = []
+    for _ in range(2):
+        pairs.append((made(LONG, 1, share=False)[0], made(LONG, 2, share=False)[0]))
+        print(f"two processes: {pairs[-1][0]:.1f} s by one, {pairs[-1][1]:.1f} s by two; {load()}", flush=True)
+    print(f"two processes: {max(one / both for one, both in pairs):.2f} times as fast, the better of two")
+
+
+def shared() -> None:
+    apart, _ = made(APPROACH, 1, share=False)
+    forked, _ = made(APPROACH, 1, share=True)
+    saved = 100 * (1 - forked / apart)
+    print(f"forks: {apart:.1f} s apart, {forked:.1f} s from one approach: {saved:.0f} % saved; {load()}")
+
+
+def listing() -> None:
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        names = [f"r{i:012x}" for i in range(ENTRIES)]
+        write_plan(folder, [Planned(name, RESOLVED, {"film.tension": 1e5, "sphere.e_dry": 0.9}) for name in names])
+        Manifest(folder).append(line(name, FINISHED, seconds=1.0) for name in names)
+        began, worked = time.perf_counter(), time.process_time()
+        found = Manifest(folder)
+        manifest, cpu = time.perf_counter() - began, time.process_time() - worked
+        count = sum(found.of(run.run).state == FINISHED for run in read_plan(folder))
+        both, of_both = time.perf_counter() - began, time.process_time() - worked
+    print(
+        f"listing: {count} finished entries in {manifest:.2f} s ({cpu:.2f} s of the processor), with the plan in "
+        f"{both:.2f} s ({of_both:.2f} s); {load()}"
+    )
+
+
+PARTS: dict[str, Callable[[], None]] = {"overhead": overhead, "two": two, "forks": shared, "listing": listing}
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or PARTS:
+        PARTS[name]()

@@ -1,0 +1,141 @@
+"""Dask as the executor of a sweep: a scheduler that runs already, or one that asks SLURM for its workers.
+
+``tcp://HOST:PORT`` is the address of a ``dask scheduler``; its workers (``dask worker tcp://HOST:PORT --nthreads
+1``) must see the sweep's folder under the same path and have the same program. ``slurm:FILE`` names a TOML file
+with the keywords of :class:`dask_jobqueue.SLURMCluster`, and ``jobs``, how many of them. Each job had better end
+its workers before its walltime does (``worker_extra_args = ["--lifetime", "55m", "--lifetime-stagger", "4m"]``); a
+run whose worker is gone goes on from its checkpoint on another one.
+"""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from restitution.errors import Defect, InputError
+from restitution.inputs import read_toml
+
+if TYPE_CHECKING:
+    from dask_jobqueue import SLURMCluster
+    from distributed import Client
+
+SLURM = "slurm:"
+JOBS = "jobs"
+_SECONDS_TO_ANSWER = 15
+_AHEAD = 2
+"""Runs that each thread of a worker has, one of them waiting."""
+_OURS = {"scheduler", "self", "job_cls", "loop", "asynchronous", "n_workers", "scheduler_cls", "job_kwargs"}
+"""Keywords that are not the user's to give; ``jobs`` is ``n_workers`` in the words of SLURM."""
+
+
+@dataclass(frozen=True)
+class Engine:
+    """What a driver is given: an executor, how many runs at a time, and why it is gone if it is."""
+
+    executor: Executor
+    at_once: Callable[[], int]
+    lost: Callable[[], str | None]
+    told: str
+
+
+@contextmanager
+def dask_engine(scheduler: str) -> Iterator[Engine]:
+    """The engine at an address, or of a file of SLURM's; raises :class:`InputError` for what cannot be had."""
+    _import()
+    from distributed import Client
+
+    if scheduler.startswith(SLURM):
+        with slurm_cluster(scheduler.removeprefix(SLURM)) as (cluster, jobs):
+            cluster.scale(jobs=jobs)
+            with Client(cluster) as client:
+                yield _engine(client, f"{jobs} jobs of SLURM, scheduler at {cluster.scheduler_address}")
+        return
+    try:
+        client = Client(scheduler, timeout=_SECONDS_TO_ANSWER)
+    except (OSError, ValueError, TypeError) as error:
+        rule = f"no scheduler answers: {error or type(error).__name__}"
+        raise InputError(Defect(rule, field="--scheduler", value=scheduler)) from None
+    try:
+        workers = client.scheduler_info()["workers"].values()
+        told = f"{len(workers)} workers at {scheduler}"
+        if any(w["nthreads"] > 1 for w in workers):
+            told += "; runs share a process where a worker has several threads: start it with --nthreads 1"
+        yield _engine(client, told)
+    finally:
+        with suppress(OSError, TimeoutError):
+            client.close(timeout=2)
+
+
+@contextmanager
+def slurm_cluster(file: str) -> Iterator[tuple[SLURMCluster, int]]:
+    """The cluster of a TOML file, and how many jobs are asked for; none is submitted yet."""
+    _import()
+    from dask_jobqueue import SLURMCluster
+
+    given = read_toml(file)
+    jobs = given.pop(JOBS, 1)
+    defects = [Defect("must be a whole number, 1 or above", file=file, field=JOBS, value=str(jobs))]
+    defects = defects if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1 else []
+    known = keywords()
+    for name in sorted(set(given) - known):
+        near = difflib.get_close_matches(name, known, n=2, cutoff=0.5)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"known: {JOBS}, {', '.join(sorted(known))}"
+        defects.append(Defect(f"is no keyword of SLURMCluster; {hint}", file=file, field=name))
+    if defects:
+        raise InputError(*defects)
+    try:
+        cluster = SLURMCluster(**given)
+    except (ValueError, TypeError, OSError) as error:
+        raise InputError(
+            Defect(f"is refused by dask-jobqueue: {' '.join(str(error).split())}", file=file)
+        ) from None
+    with cluster:
+        yield cluster, jobs
+
+
+def keywords() -> set[str]:
+    """What :class:`dask_jobqueue.SLURMCluster` takes, as its own signatures have it."""
+    from dask_jobqueue.core import Job, JobQueueCluster
+    from dask_jobqueue.slurm import SLURMJob
+
+    found: set[str] = set()
+    for kind in (SLURMJob, JobQueueCluster, Job):
+        found |= {
+            name for name, p in inspect.signature(kind.__init__).parameters.items() if p.kind is not p.VAR_KEYWORD
+        }
+    return found - _OURS
+
+
+def _engine(client: Client, told: str) -> Engine:
+    address = client.scheduler.address if client.scheduler is not None else "its address"
+
+    def at_once() -> int:
+        with suppress(OSError, AttributeError):
+            return max(1, _AHEAD * sum(client.nthreads().values()))
+        return 1
+
+    def lost() -> str | None:
+        if client.status == "running":
+            return None
+        return (
+            f"the scheduler at {address} is gone: what is finished is kept; start it again and give the same "
+            "command, which goes on from the checkpoints"
+        )
+
+    # not pure: each submission is a run of its own, even of an equal task after a death
+    return Engine(client.get_executor(pure=False), at_once, lost, told)
+
+
+def _import() -> Any:
+    try:
+        import dask_jobqueue
+        import distributed
+    except ImportError as error:
+        rule = f"needs {error.name}: pip install 'restitution[cluster]'"
+        raise InputError(Defect(rule, field="--scheduler")) from None
+    return dask_jobqueue, distributed
