@@ -10,7 +10,7 @@ from restitution.commands import fit_options, options
 from restitution.commands.console import now_and_then, show, show_doubts, show_rows
 
 if TYPE_CHECKING:
-    from restitution.calibration.result.ranking import Ranking, Row
+    from restitution.calibration.result.ranking import Ranking, Row, Score
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -67,6 +67,8 @@ def run(args: argparse.Namespace) -> None:
     show_doubts(doubts)
 
 
+_NAMED = 5
+"""Impacts named one by one."""
 HEADINGS = (
     "law",
     "k",
@@ -137,17 +139,9 @@ def _show(ranking: Ranking) -> None:
         show(f"the data do not separate: {', '.join(contenders)}")
     elif len(ranking.scores) > 1:
         show(f"the data support {contenders[0]} over all others")
-    weighed = {s.label: len(s.loo) - s.refitted for s in ranking.scores if s.refitted < len(s.loo)}
-    if weighed:
-        again = ", ".join(f"{s.label} {s.refitted}" for s in ranking.scores if s.label in weighed and s.refitted)
-        show(
-            "elpd of one left out: by Pareto-smoothed weights of draws"
-            + (
-                f", but for those that a fit left out since their weights cannot be trusted: {again}"
-                if again
-                else ""
-            )
-        )
+    for s in ranking.scores:
+        if s.refitted < len(s.loo):
+            show(f"{s.label}: {_how_left_out(s)}")
     unlike = [s.label for s in ranking.scores if s.check < 0.05]
     if unlike:
         show(
@@ -155,3 +149,21 @@ def _show(ranking: Ranking) -> None:
         )
     for reason in dict.fromkeys(ranking.failed.values()):
         show(f"left out: {', '.join(law for law, why in ranking.failed.items() if why == reason)}: {reason}")
+
+
+def _how_left_out(score: Score) -> str:
+    """Which impacts were left out by weights of draws, which by fits, and what that may do to the sum."""
+    out, observations = score.left_out, score.fit.likelihood.observations
+    n, distrusted = len(score.loo), out.distrusted
+    checked = score.refitted - len(distrusted)
+    text = (
+        f"{n - score.refitted} of {n} impacts left out by Pareto-smoothed weights of draws (k up to "
+        f"{out.largest_k:.2f}), {checked} drawn at random by fits, which puts the error of the "
+        f"elpd at {out.error:.2g}"
+    )
+    if not len(distrusted):
+        return text
+    rows = [":".join(map(str, observations.place(i).values())) for i in distrusted[:_NAMED].tolist()]
+    named = ", ".join(filter(None, rows)) + (", ..." if len(distrusted) > _NAMED else "")
+    where = f" ({named})" if any(rows) else ""
+    return f"{text}; {len(distrusted)} whose weights cannot be trusted by fits too{where}"

@@ -41,6 +41,8 @@ _CELLS = {0: 1, 1: 48, 2: 16}
 """Cells of the grid along each standard deviation, by how many there are."""
 _FALL = 12.0
 """The grid ends where ln of the density has fallen by this much."""
+_ACROSS = 12
+"""Places tried along a standard deviation to find where its grid begins."""
 _ROUNDS = 4
 _MOST_TIMES = 4.0
 """By how much the number of draws is raised where each is worth less than half of one."""
@@ -147,7 +149,8 @@ class _Proposal:
         ) - slope * (earlier @ likelihood.jointly.away(self.best)[self.law])
         self.shift, self.spread = np.zeros(len(self.law)), np.eye(len(self.law))
         self._near: dict[tuple[float, ...], tuple[NDArray, NDArray]] = {}
-        self.edges = [np.linspace(0.0, self._reach(j), _CELLS[len(self.deviations)] + 1) for j in self.deviations]
+        ends = [self._reach(j) for j in self.deviations]
+        self.edges = [np.linspace(self._begin(k, ends), end, _CELLS[len(ends)] + 1) for k, end in enumerate(ends)]
         self.mass = self._masses()
 
     def near(self, phi: tuple[float, ...]) -> tuple[NDArray, NDArray]:
@@ -213,6 +216,27 @@ class _Proposal:
         while end > 1e-9 and highest - at(end / 1.3) > _FALL:
             end /= 1.3
         return end
+
+    def _begin(self, k: int, ends: Sequence[float]) -> float:
+        """Where the grid of one standard deviation begins: at nought unless half of it would be empty cells.
+
+        What many impacts know within one of the cells from nought on, weights of draws from them do not tell. The
+        other deviation may make up for this one, so it is tried over all of its range.
+        """
+        others = [np.linspace(0.0, end, _ACROSS) if i != k else [0.0] for i, end in enumerate(ends)]
+
+        def highest(value: float) -> float:
+            places = np.stack(np.meshgrid(*others, indexing="ij"), axis=-1).reshape(-1, len(ends))
+            places[:, k] = value
+            return max(self.log_mass(tuple(row)) for row in places.tolist())
+
+        begin, step = 0.5 * ends[k], 0.5 * ends[k] / _ACROSS
+        top = max(highest(begin + i * step) for i in range(_ACROSS))
+        if top - highest(begin) < _FALL:
+            return 0.0
+        while top - highest(begin + step) > _FALL:
+            begin += step
+        return begin
 
     def _masses(self) -> NDArray:
         """Of the cells, by the middle of each, shape (cells,) or (cells, cells)."""

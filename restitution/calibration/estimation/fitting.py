@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.estimation.curvature import Curvature
+from restitution.calibration.estimation.curvature import Curvature, nearby
 from restitution.calibration.estimation.first_guess import first_guess
 from restitution.calibration.estimation.identifiability import check_bounds, check_flat, of_estimate
 from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
@@ -71,7 +71,8 @@ def estimate(
     observations : impacts, as :func:`restitution.calibration.read` gives them.
     intervals : whether parameters get intervals, or the names of those that do.
     restricted : False for the plain maximum, whose value ranks laws.
-    near : estimate of a similar fit with the same parameters, to start from.
+    near : estimate of a similar fit with the same parameters, to start from; Newton's steps from there do where
+        they come to rest.
     covariance : whether the covariance is wanted.
 
     Raises
@@ -98,8 +99,10 @@ def estimate(
     curvature = Curvature.of(likelihood, restriction) if covariance or intervals else None
     freedom = np.full(len(parameters), np.inf)
     if not intervals:
-        best = maximise(function, parameters, start, covariance=covariance, steps=steps)
-        best = settled(best, function, curvature) if covariance else best
+        best = nearby(near, parameters, function, curvature) if near is not None and covariance else None
+        if best is None:
+            best = maximise(function, parameters, start, covariance=covariance, steps=steps)
+            best = settled(best, function, curvature) if covariance else best
         return Fit(plan, likelihood, best, freedom, restriction is not None, ())
     best = settled(maximise(function, parameters, start), function, curvature)
     mean = np.array([p.mean for p in parameters], bool)

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ from restitution.calibration.estimation.likelihood import Likelihood
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.result.influence import fit_without
-from restitution.calibration.result.leaving_out import LeavingOut
+from restitution.calibration.result.leaving_out import LeavingOut, LeftOut
 from restitution.calibration.showing import Showing, Table, counted
 from restitution.errors import ConventionError, InputError
 
@@ -43,7 +44,7 @@ REPLICATES = 1000
 class Score:
     """One law's scores; ``loo`` has one elpd an impact, ``loso`` one a source (empty with a single source).
 
-    ``refitted`` of the impacts were left out by a fit, the others by weights of draws.
+    ``left_out`` says which impacts were left out by a fit, and how far the weights of the others may be off.
     """
 
     label: str
@@ -54,9 +55,14 @@ class Score:
     bic: float
     loo: NDArray
     loso: NDArray
-    refitted: int
+    left_out: LeftOut
     check: float
     """P-value of the predictive check: small where neighbours in St deviate alike."""
+
+    @property
+    def refitted(self) -> int:
+        """How many impacts were left out by a fit, the others by weights of draws."""
+        return int(self.left_out.refitted.sum())
 
     @property
     def elpd_loo(self) -> float:
@@ -186,7 +192,7 @@ def score(
     one = leaving.impacts()
     loso = leaving.sources().elpd if len(fit.likelihood.source_names) > 1 else np.zeros(0)
     aic, bic = 2 * k - 2 * log_likelihood, k * np.log(n) - 2 * log_likelihood
-    return Score(label, fit, k, log_likelihood, aic, bic, one.elpd, loso, one.refitted, _neighbours(fit, seed))
+    return Score(label, fit, k, log_likelihood, aic, bic, one.elpd, loso, one, _neighbours(fit, seed))
 
 
 def _left_out(whole: Fit, out: NDArray) -> float:
@@ -201,24 +207,15 @@ def predictive(fit: Fit, whole: Likelihood, out: NDArray) -> float:
     and J C J^T of the parameters. Limits enter one by one, given the measured ones.
     """
     values, o = fit.maximum.values, whole.observations
-    f, variance, omega = whole.moments(values)
+    f = whole.moments(values)[0]
     of_law = np.array([p.mean for p in fit.maximum.parameters], bool)
     J, C = whole.jacobian(values)[:, of_law], fit.maximum.covariance[np.ix_(of_law, of_law)]
-    inside = ~out & ~o.censored
-    same = (whole.sources[:, None] == whole.sources).astype(float)
-    mean, cov = f.copy(), np.diag(variance) + omega**2 * same
-    if (between := whole.between(values)) is not None:
-        measured = np.flatnonzero(~o.censored)
-        cov[np.ix_(measured, measured)] += between
-    if (omega > 0 or between is not None) and inside.any():
-        gain = np.linalg.solve(cov[np.ix_(inside, inside)], cov[np.ix_(inside, out)]).T
-        mean[out] += gain @ (o.e - f)[inside]
-        J_out = J[out] - gain @ J[inside]
-        cov_out = cov[np.ix_(out, out)] - gain @ cov[np.ix_(inside, out)]
-    else:
-        J_out, cov_out = J[out], cov[np.ix_(out, out)]
-    cov_out = cov_out + J_out @ C @ J_out.T
-    mean, e, upper = mean[out], o.e[out], o.upper[out]
+    inside = ~out & ~o.censored & np.isin(whole.sources, whole.sources[out])  # other sources tell nothing else
+    known = _known_of_offset(whole, values, inside, out)
+    mean = f[out] + known.gain((o.e - f)[inside, None])[:, 0]
+    J_out = J[out] - known.gain(J[inside])
+    cov_out = known.covariance + J_out @ C @ J_out.T
+    e, upper = o.e[out], o.upper[out]
     seen = ~np.isnan(e)
     total = 0.0
     if seen.any():
@@ -231,6 +228,39 @@ def predictive(fit: Fit, whole: Likelihood, out: NDArray) -> float:
             m, v = m + weight @ r, v - weight @ cov_out[seen, i]
         total += float(log_ndtr((upper[i] - m) / np.sqrt(max(v, 1e-24))))
     return float(total)
+
+
+class _Known(NamedTuple):
+    """Of impacts left out, given those of their sources: the gain on their residuals, and what stays open."""
+
+    gain: Callable[[NDArray], NDArray]
+    covariance: NDArray
+
+
+def _known_of_offset(whole: Likelihood, values: NDArray, inside: NDArray, out: NDArray) -> _Known:
+    """With the offset alone the gain is w omega^2/(1 + omega^2 W); shared errors need the sources' matrix."""
+    _, variance, omega = whole.moments(values)
+    own, s_in, s_out = variance[out], whole.sources[inside], whole.sources[out]
+    between = whole.between(values)
+    if between is None:
+        n, w = len(whole.source_names), 1 / variance[inside]
+        shrink = omega**2 / (1 + omega**2 * np.bincount(s_in, w, n))
+
+        def gain(x: NDArray) -> NDArray:
+            sums = np.stack([np.bincount(s_in, w * column, n) for column in x.T], axis=1)
+            return (shrink[:, None] * sums)[s_out]
+
+        return _Known(gain, np.diag(own) + shrink[s_out, None] * (s_out[:, None] == s_out))
+    places = np.concatenate([np.flatnonzero(inside), np.flatnonzero(out)])
+    s = whole.sources[places]
+    cov = np.diag(variance[places]) + omega**2 * (s[:, None] == s)
+    seen = ~whole.observations.censored
+    at = (np.cumsum(seen) - 1)[places]  # among the measured ones
+    both = seen[places]
+    cov[np.ix_(both, both)] += between[np.ix_(at[both], at[both])]
+    m = int(inside.sum())
+    G = np.linalg.solve(cov[:m, :m], cov[:m, m:]).T
+    return _Known(lambda x: G @ x, cov[m:, m:] - G @ cov[:m, m:])
 
 
 def _neighbours(fit: Fit, seed: int) -> float:

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from scipy.special import logsumexp
-from scipy.stats import norm
+from scipy.stats import multivariate_normal, norm
 from scipy.stats import t as student
 
 from restitution.calibration import Plan, model_of, read
+from restitution.calibration.estimation import fitting
 from restitution.calibration.estimation.parameters import log_prior
-from restitution.calibration.result import leaving_out, ranking
+from restitution.calibration.result import influence, leaving_out, ranking
 
 
 def test_weights_give_the_predictive_density_of_a_mean():
@@ -82,8 +83,9 @@ def test_weights_give_the_integral_over_the_posterior(tmp_path, monkeypatch):
     rest = density.sum(axis=1, keepdims=True) - density + prior[:, None]
     exact = logsumexp(rest + density, axis=0) - logsumexp(rest, axis=0)
     monkeypatch.setattr(leaving_out, "FEWEST", 10)
+    monkeypatch.setattr(leaving_out, "CHECKED", 0)
     found = ranking.score("law", plan, o, intervals=False)
-    assert found.refitted < 4
+    assert len(found.left_out.distrusted) < 4
     np.testing.assert_allclose(np.sort(found.loo)[4:], np.sort(exact)[4:], atol=0.05)
     assert found.elpd_loo == pytest.approx(exact.sum(), abs=0.5)
 
@@ -95,9 +97,67 @@ def test_weights_agree_with_fits_to_the_others(sources, tmp_path, monkeypatch):
     fits = ranking.score("law", plan, o, intervals=False)
     assert fits.refitted == 60
     monkeypatch.setattr(leaving_out, "FEWEST", 10)
+    monkeypatch.setattr(leaving_out, "CHECKED", 0)
     weights = ranking.score("law", plan, o, intervals=False)
-    assert weights.refitted < 6
+    assert len(weights.left_out.distrusted) < 6
     assert weights.elpd_loo == pytest.approx(fits.elpd_loo, abs=1.0)
     np.testing.assert_allclose(np.median(weights.loo - fits.loo), 0, atol=0.03)
     if sources > 1:
         assert weights.elpd_loso == pytest.approx(fits.elpd_loso, abs=2.0)
+
+
+@pytest.mark.parametrize("law", ["eq4_exponential", "eq4_rational"])
+def test_newtons_steps_come_to_rest_where_a_search_does(law, tmp_path, monkeypatch):
+    """Also where the law misfits, and single impacts without a rebound weigh much."""
+    o = impacts(tmp_path, 80, 4)
+    fit = fitting.estimate(Plan(model_of(law)), o, intervals=False)
+    masks = list(np.eye(80, dtype=bool)[::4])
+    found = [influence.fit_without(fit, out).maximum for out in masks]
+    assert sum(m.calls == 0 for m in found) > 15  # no search was made
+    near = [ranking.predictive(influence.fit_without(fit, out), fit.likelihood, out) for out in masks]
+    monkeypatch.setattr(fitting, "nearby", lambda *_: None)
+    searched = [influence.fit_without(fit, out) for out in masks]
+    for newton, search in zip(found, searched, strict=True):
+        away = (newton.values - search.maximum.values) / search.maximum.sigma
+        np.testing.assert_allclose(away, 0, atol=1e-3)
+    far = [ranking.predictive(f, fit.likelihood, out) for f, out in zip(searched, masks, strict=True)]
+    np.testing.assert_allclose(near, far, atol=1e-3)
+
+
+@pytest.mark.parametrize("law", ["eq4_exponential", "eq4_rational"])
+@pytest.mark.parametrize("sources", [1, 8])
+def test_weights_are_as_near_to_fits_as_is_stated(law, sources, tmp_path, monkeypatch):
+    """The error comes from a third of the impacts; the sum of all is held against fits for every one."""
+    o, plan = impacts(tmp_path, 90, sources), Plan(model_of(law))
+    exact = ranking.score("law", plan, o, intervals=False)
+    assert exact.left_out.error == 0
+    monkeypatch.setattr(leaving_out, "FEWEST", 10)
+    monkeypatch.setattr(leaving_out, "CHECKED", 30)
+    found = ranking.score("law", plan, o, intervals=False)
+    assert 30 <= found.refitted < 50
+    assert abs(found.elpd_loo - exact.elpd_loo) < 3 * found.left_out.error < 5
+    np.testing.assert_array_equal(found.loo[found.left_out.refitted], exact.loo[found.left_out.refitted])
+
+
+def test_many_impacts_that_a_law_misfits_are_weighed(tmp_path):
+    """They know the scatter to a few per cent, which cells from nought on could not tell apart."""
+    found = ranking.score("law", Plan(model_of("eq4_rational")), impacts(tmp_path, 600, 3), intervals=False)
+    assert len(found.left_out.distrusted) < 6
+
+
+def test_an_offset_is_known_from_the_impacts_that_stay(tmp_path):
+    """Against the conditional of the joint normal of all impacts, written as matrices."""
+    o = impacts(tmp_path, 40, 3)
+    o = o.take(~o.censored)
+    fit = fitting.estimate(Plan(model_of("eq4_exponential"), offsets=True), o, intervals=False)
+    out = np.arange(len(o)) % 9 == 0
+    rest, whole = influence.fit_without(fit, out), fit.likelihood
+    f, v, omega = whole.moments(rest.maximum.values)
+    J, C = whole.jacobian(rest.maximum.values)[:, :1], rest.maximum.covariance[:1, :1]
+    K = np.diag(v) + omega**2 * (whole.sources[:, None] == whole.sources)
+    gain = K[np.ix_(out, ~out)] @ np.linalg.inv(K[np.ix_(~out, ~out)])
+    D = J[out] - gain @ J[~out]
+    S = K[np.ix_(out, out)] - gain @ K[np.ix_(~out, out)] + D @ C @ D.T
+    expected = multivariate_normal.logpdf(o.e[out], f[out] + gain @ (o.e - f)[~out], S)
+    assert omega > 0.005
+    assert ranking.predictive(rest, whole, out) == pytest.approx(expected, abs=1e-8)
