@@ -1,8 +1,11 @@
-"""The lines of a text file whoever wrote it: UTF-8, UTF-16 of spreadsheets, Latin-1 of old programs."""
+"""The lines of a text file whoever wrote it: UTF-8, UTF-16 of spreadsheets, code pages of Windows."""
 
 from __future__ import annotations
 
 import codecs
+import contextlib
+import itertools
+import re
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
@@ -11,30 +14,44 @@ from restitution.inputs import read_bytes
 _BINARY = {
     b"PK\x03\x04": "is a spreadsheet or an archive, no text; save the table as CSV",
     b"\xd0\xcf\x11\xe0": "is an old spreadsheet, no text; save the table as CSV",
-    b"\x89HDF": "is HDF5, no text; export the table as CSV",
+    b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.hdf5`
     b"\x1f\x8b": "is compressed; unpack it first",
 }
 
 
+WESTERN = "cp1252"
+_OTHER_LATIN = ["cp1250", "cp1254", "cp1257", "mac_roman"]
+_OTHER_SCRIPTS = ["cp1251", "cp1253", "gb18030", "cp932", "cp949", "big5"]
+_BEYOND = re.compile(rb"[\x80-\xff]")
+_WORDS = re.compile(rb"[\x80-\xff]{3,}")
+_SAMPLE = 2**14
 _MARKUP = {"{": "JSON", "<": "XML"}
 
 
-def read_lines(path: str | Path) -> list[str]:
-    """The lines of a file without their ends; raises :class:`InputError` where it has no text."""
-    file = str(path)
-    data = read_bytes(path)
+def text_of(data: bytes, file: str) -> str:
+    """The text in the bytes of a file, its lines ending alike; raises :class:`InputError` where there is none."""
     for mark, rule in _BINARY.items():
         if data.startswith(mark):
             raise InputError(Defect(rule, file=file))
     if not data.removeprefix(codecs.BOM_UTF8).strip():
         raise InputError(Defect("is empty", file=file))
     text = _decoded(data, file)
-    if kind := _MARKUP.get(text.lstrip()[:1]):
-        raise InputError(Defect(f"is {kind}, no table; export the table as CSV", file=file))
     if "\0" in text:
         row = text[: text.index("\0")].count("\n") + 1
         raise InputError(Defect("has a NUL byte", file=file, row=row))
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_lines(path: str | Path) -> list[str]:
+    """The lines of a table without their ends; raises :class:`InputError` where it is none."""
+    return lines_of(text_of(read_bytes(path), str(path)), str(path))
+
+
+def lines_of(text: str, file: str) -> list[str]:
+    """The lines of a text; raises :class:`InputError` for markup, which is no table."""
+    if kind := _MARKUP.get(text.lstrip()[:1]):
+        raise InputError(Defect(f"is {kind}, no table; export the table as CSV", file=file))
+    return text.split("\n")
 
 
 def _decoded(data: bytes, file: str) -> str:
@@ -46,4 +63,26 @@ def _decoded(data: bytes, file: str) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return data.decode("cp1252", errors="replace")
+        return data.decode(_code_page(data), errors="replace")
+
+
+def _code_page(data: bytes) -> str:
+    """The code page of a text that is no UTF-8: that of western Europe, unless whole words are beyond ASCII."""
+    beyond = b"\n".join(line for line in data.splitlines() if _BEYOND.search(line))[:_SAMPLE]
+    in_words = sum(map(len, _WORDS.findall(beyond)))
+    if 2 * in_words < len(_BEYOND.findall(beyond)):
+        return WESTERN
+    from charset_normalizer import from_bytes
+
+    best = from_bytes(beyond, cp_isolation=_OTHER_SCRIPTS).best()
+    return WESTERN if best is None else best.encoding
+
+
+def mistaken(name: str) -> list[str]:
+    """What a name looks like where its file is in one code page and was read as another: few words tell which."""
+    found = []
+    pages = () if name.isascii() else (WESTERN, *_OTHER_LATIN, *_OTHER_SCRIPTS)
+    for page, other in itertools.permutations(pages, 2):
+        with contextlib.suppress(UnicodeEncodeError):
+            found.append(name.encode(page).decode(other, errors="replace"))
+    return found

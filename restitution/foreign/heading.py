@@ -20,7 +20,7 @@ _NUMERIC = 0.5
 """Part of the filled cells of a column of numbers that are numbers; the others are defects, named one by one."""
 _FRAMES = {
     "frame": "frame", "frames": "frame", "fr": "frame", "pixel": "px", "pixels": "px", "px": "px",
-    "sec": "s", "msec": "ms",
+    "sec": "s", "msec": "ms", "micron": "um", "microns": "um",
 }  # fmt: skip
 """Units that are none of SI, or have other names there."""
 _LATTICE = {"d": "d"}
@@ -61,7 +61,7 @@ def heading_of(layout: Layout) -> Heading:
         if placed is None or not _are_words(placed):
             continue
         if _are_units(placed) and at > 0 and not units:
-            units = {i: _bare(text) for i, text in placed.items() if _is_unit(text)}
+            units = {i: unit_of(text) for i, text in placed.items() if _is_unit(text)}
             continue
         known = next((j for j in range(at) if program_of(above[j][1]) and _placed(above[j][1], width, filled)), at)
         line, placed = above[known][0], _placed(above[known][1], width, filled) or placed
@@ -91,7 +91,7 @@ def without_unit(name: str) -> str:
 def _apart(name: str) -> tuple[str, str | None]:
     for pattern in (_BRACKETS, _SLASH, _SUFFIX):
         if (match := pattern.fullmatch(name)) and _is_unit(match["unit"]):
-            return match["name"], _bare(match["unit"])
+            return match["name"], unit_of(match["unit"])
     return name, None
 
 
@@ -157,7 +157,7 @@ def _from_comments(heading: Heading, layout: Layout, width: int, filled: list[in
         if placed is None:
             continue
         if not units and all(_is_unit(name) for name in placed.values()):
-            units = {i: _bare(name) for i, name in placed.items()}
+            units = {i: unit_of(name) for i, name in placed.items()}
             continue
         heading.names, heading.line, heading.commented = placed, line, True
         return units
@@ -216,7 +216,7 @@ def _with_tracks(names: dict[int, str], above: list[list[str]]) -> dict[int, str
 
 
 def _is_unit(text: str) -> bool:
-    text = _bare(text)
+    text = unit_of(text)
     if not text or text.lower() in _FRAMES or text in _FRAMES.values() or text in _LATTICE:
         return True
     if text[0].isdigit():
@@ -228,7 +228,7 @@ def _is_unit(text: str) -> bool:
     return True
 
 
-def _bare(text: str) -> str:
+def unit_of(text: str) -> str:
     bare = text.strip().strip("()[]").strip()
     return _FRAMES.get(bare.lower(), bare)
 

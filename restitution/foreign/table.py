@@ -7,12 +7,14 @@ from itertools import groupby
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
-from restitution.foreign import blocks, programs, stopwatch
-from restitution.foreign.file_text import read_lines
+from restitution.foreign import blocks, hdf5, markup, programs, stopwatch
+from restitution.foreign.file_text import lines_of, mistaken, text_of
 from restitution.foreign.heading import Heading, data_rows, heading_of, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain
 from restitution.foreign.programs import Program
+from restitution.foreign.spots import Spots
+from restitution.inputs import read_bytes
 from restitution.tables.csv_text import CsvText
 
 _MOST_NAMED = 20
@@ -39,15 +41,16 @@ class ForeignTable:
 
     def column(self, name: str) -> str | None:
         """The column of that name, in whatever case, of the only track, or of that number; None if none is."""
-        lower = name.lower()
-        for fits in (
-            [own for own in self.header if own == name],
-            [own for own in self.header if own.lower() == lower],
-            [own for own in self.header if without_unit(own).lower() == lower],
-            [own for own in self.header if without_unit(own).lower().rpartition("/")[2] == lower],
-        ):
-            if len(fits) == 1:
-                return fits[0]
+        for known in (name, *mistaken(name)):
+            lower = known.lower()
+            for fits in (
+                [own for own in self.header if own == known],
+                [own for own in self.header if own.lower() == lower],
+                [own for own in self.header if without_unit(own).lower() == lower],
+                [own for own in self.header if without_unit(own).lower().rpartition("/")[2] == lower],
+            ):
+                if len(fits) == 1:
+                    return fits[0]
         return self.header[int(name) - 1] if name.isdecimal() and 0 < int(name) <= len(self.header) else None
 
     @property
@@ -105,7 +108,7 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
 
     Parameters
     ----------
-    path : a table of text: commas, semicolons, tabs or spaces between columns; a LAMMPS dump; OpenFOAM's vectors.
+    path : a table of text: commas, semicolons, tabs or spaces between columns; dumps, logs and XML of programs.
     decimal : the decimal sign, where the numbers leave it open.
 
     Raises
@@ -113,7 +116,12 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
     InputError : where it is no such table, or what its numbers are is not clear, with the row and what would help.
     """
     file = str(path)
-    lines = read_lines(path)
+    if (data := read_bytes(path)).startswith(hdf5.MAGIC):
+        return _of_spots(file, hdf5.spots(data, file))
+    text = text_of(data, file)
+    if markup.is_markup(text):
+        return _of_spots(file, markup.spots(text, file))
+    lines = lines_of(text, file)
     if blocks.is_lammps(lines):
         return _of_blocks(file, *blocks.lammps(lines, file), programs.LAMMPS)
     if blocks.is_kinovea(lines):
@@ -151,6 +159,12 @@ def _program(layout: Layout, heading: Heading) -> Program | None:
     if layout.lines[0].startswith("Vernier Format"):
         return programs.VERNIER_TEXT
     return programs.OPENFOAM if layout.vectors else None
+
+
+def _of_spots(file: str, found: Spots) -> ForeignTable:
+    rows = [(row.line, row.cells) for row in found.rows]
+    form = found.program.name if found.program is not None else "HDF5"
+    return ForeignTable(file, found.names, rows, found.units, found.program, form=form)
 
 
 def _of_blocks(file: str, names: list[str], rows: list[Row], program: Program) -> ForeignTable:

@@ -117,6 +117,51 @@ def openfoam():
     return lines(["# Motion of the sphere", "# Time position velocity"], rows)
 
 
+def trackmate_model(units="pixel", scale=1.0, y=PIXELS):
+    """Two tracks, of which a filter left the second, and a spot of none."""
+    other = (
+        '<Spot ID="9000" name="a" FRAME="0" POSITION_T="0.0" POSITION_X="1.0" POSITION_Y="2.0" POSITION_Z="0.0" />'
+    )
+    spots, edges = [], []
+    for i, place in enumerate(y):
+        own = f'<Spot ID="{100 + i}" name="s" QUALITY="7.5" POSITION_T="{i / RATE:.9g}" FRAME="{i}" RADIUS="40.0" '
+        own += f'POSITION_X="200.0" POSITION_Y="{scale * place:.9g}" POSITION_Z="0.0" />'
+        spots.append(f'<SpotsInFrame frame="{i}">{other.replace("9000", str(9000 + i))}{own}</SpotsInFrame>')
+        if i:
+            edges.append(f'<Edge SPOT_SOURCE_ID="{99 + i}" SPOT_TARGET_ID="{100 + i}" LINK_COST="1.0" />')
+    head = ['<?xml version="1.0" encoding="UTF-8"?>', '<TrackMate version="7.11.1">',
+            f'<Model spatialunits="{units}" timeunits="sec">', "<AllSpots>"]  # fmt: skip
+    tail = ["</AllSpots>", "<AllTracks>",
+            '<Track TRACK_ID="0" name="Track_0"><Edge SPOT_SOURCE_ID="9000" SPOT_TARGET_ID="9001" /></Track>',
+            '<Track TRACK_ID="3" name="Track_3">', *edges, "</Track>", "</AllTracks>",
+            '<FilteredTracks><TrackID TRACK_ID="3" /></FilteredTracks>', "</Model>", "</TrackMate>"]  # fmt: skip
+    return lines(head, [*spots, *tail])
+
+
+def trackmate_tracks():
+    rows = [f'<detection t="{i}" x="116.2" y="{y:.9g}" z="0.0" />' for i, y in enumerate(PIXELS)]
+    head = ['<?xml version="1.0" encoding="UTF-8"?>',
+            '<Tracks nTracks="1" spaceUnits="pixel" frameInterval="0.004" timeUnits="sec" from="TrackMate v7.12">',
+            f'<particle nSpots="{FRAMES}">']  # fmt: skip
+    return lines(head, [*rows, "</particle>", "</Tracks>"])
+
+
+def kinovea_analysis(calibrated):
+    """Of a film at 250 frames a second, 512 time stamps a frame, its texts with decimal commas."""
+    rows = []
+    for i, (row, y) in enumerate(zip(PIXELS, CENTRE, strict=True)):
+        user = f'UserX="1,50" UserXInvariant="1.50" UserY="{comma(f"{100 * y:.7f}")}" '
+        user += f'UserYInvariant="{100 * y:.7f}" UserTime="0:00:00:{i:02d}"'
+        rows.append(f"<TrackPoint {user if calibrated else ''}>200.5;{row:.6f};{512 * (i + 20)}</TrackPoint>")
+    length = "cm" if calibrated else "px"
+    head = ['<?xml version="1.0" encoding="utf-8"?>', "<KinoveaVideoAnalysis>",
+            "<FormatVersion>2.0</FormatVersion>", "<AverageTimeStampsPerFrame>512</AverageTimeStampsPerFrame>",
+            "<CaptureFramerate>250</CaptureFramerate>", "<UserFramerate>25</UserFramerate>",
+            "<Tracks>", '<Track name="ball">',
+            f'<TrackPointList Count="{FRAMES}" UserUnitLength="{length}">']  # fmt: skip
+    return lines(head, [*rows, "</TrackPointList>", "</Track>", "</Tracks>", "</KinoveaVideoAnalysis>"])
+
+
 METRES = {"time": "t", "position": "y", "time_unit": "s", "unit": "m"}
 CENTRES = {**METRES, "point": "centre"}
 FILES = {
@@ -162,6 +207,13 @@ FILES = {
         lines(["TRACK_ID,POSITION_X,POSITION_Y,POSITION_T,FRAME", "T,X,Y,T,Frame", ",(micron),(micron),(sec),"],
               [f"0,3,{1e6 * y:.6f},{t:.9g},{i}" for i, (t, y) in enumerate(zip(T, 0.03 - CENTRE, strict=True))]),
         {"wall": 30000.0}),
+    "TrackMate, its model": (trackmate_model(), {"pixel": "0.05 mm", "wall": ROW}),
+    "TrackMate, its model, calibrated": (
+        trackmate_model("micron", 1e6, 0.03 - CENTRE), {"wall": 30000.0}),
+    "TrackMate, tracks exported": (trackmate_tracks(), {"pixel": "0.05 mm", "wall": ROW}),
+    "Kinovea, its analysis": (kinovea_analysis(True), {"point": "centre"}),
+    "Kinovea, its analysis in pixels": (
+        kinovea_analysis(False), {"pixel": "0.05 mm", "wall": ROW, "point": "centre"}),
     "trackpy": (trackpy(), {**IMAGE, "particle": 0}),
     "DeepLabCut": (deeplabcut(), {**IMAGE, "particle": "ball", "point": "centre"}),
     "DeepLabCut, several animals": (
@@ -403,3 +455,41 @@ def test_a_unit_against_that_of_the_file_is_said(tmp_path):
     (note,) = found.notes
     assert "--time-unit" in note
     assert "ms" in note
+
+
+BOMB = "".join(f'<!ENTITY a{n} "{f"&a{n - 1};" * 10}">' for n in range(1, 12))
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        (f'<?xml version="1.0"?><!DOCTYPE t [<!ENTITY a0 "a">{BOMB}]><Tracks>&a11;</Tracks>', "document type"),
+        ("<Tracks>" + "<particle>" * 10**6, "nested"),
+        (trackmate_tracks()[:2000], "whole XML"),
+        ("<svg><path d='M0 0'/></svg>", "svg"),
+        (trackmate_tracks().replace("<detection", "<spot"), "without a point"),
+        ('<?xml version="1.0" encoding="no-such"?><Tracks></Tracks>', "without a point"),
+    ],
+    ids=["entities", "deep", "cut", "another", "empty", "encoding"],
+)
+def test_other_xml_is_refused(tmp_path, text, named):
+    path = tmp_path / "tracks.xml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=named):
+        read_foreign(path)
+
+
+@pytest.mark.parametrize(
+    ("page", "time", "height"),
+    [
+        ("cp1251", "Время", "Высота"), ("cp1253", "χρόνος", "ύψος"), ("gb18030", "时间", "高度"),
+        ("cp1250", "čas", "výška"), ("cp1252", "temps", "hauteur à côté"), ("cp1250", "czas", "wysokość"),
+        ("cp932", "時間", "高さ"), ("utf-16", "Время", "Высота"), ("cp1254", "süre", "yükseklik ğ"),
+    ],
+)  # fmt: skip
+def test_columns_are_named_in_any_script(tmp_path, page, time, height):
+    path = tmp_path / "track.csv"
+    rows = [comma(row) for row in csv(T, 1e3 * GAP, sign=";")]
+    path.write_bytes("\n".join([f"{time} (s);{height} (mm)", *rows]).encode(page))
+    settings = Settings(time=time, position=height, point="lowest")
+    np.testing.assert_allclose(read_track(read_foreign(path), settings, None).table.gap_m, GAP, atol=1e-11)
