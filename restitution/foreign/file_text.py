@@ -14,7 +14,7 @@ from restitution.inputs import read_bytes
 _BINARY = {
     b"PK\x03\x04": "is a spreadsheet or an archive, no text; save the table as CSV",
     b"\xd0\xcf\x11\xe0": "is an old spreadsheet, no text; save the table as CSV",
-    b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.hdf5`
+    b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.formats.hdf5`
     b"\x1f\x8b": "is compressed; unpack it first",
 }
 

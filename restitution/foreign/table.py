@@ -7,13 +7,14 @@ from itertools import groupby
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
-from restitution.foreign import blocks, hdf5, markup, programs, stopwatch
+from restitution.foreign import programs
 from restitution.foreign.file_text import lines_of, mistaken, text_of
+from restitution.foreign.formats import blocks, hdf5, markup, stopwatch
+from restitution.foreign.formats.spots import Spots
 from restitution.foreign.heading import Heading, data_rows, heading_of, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain
 from restitution.foreign.programs import Program
-from restitution.foreign.spots import Spots
 from restitution.inputs import read_bytes
 from restitution.tables.csv_text import CsvText
 

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import Defect, InputError
+from restitution.foreign.formats.spots import Spots
 from restitution.foreign.layout import Row
 from restitution.foreign.programs import SLEAP, program_of
-from restitution.foreign.spots import Spots
 
 if TYPE_CHECKING:
     import h5py

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from xml.parsers import expat
 
 from restitution.errors import Defect, InputError
+from restitution.foreign.formats.spots import Spots
 from restitution.foreign.heading import unit_of
 from restitution.foreign.layout import Row
 from restitution.foreign.programs import KINOVEA_TEXT, TRACKMATE
-from restitution.foreign.spots import Spots
 
 _DEEPEST = 50
 """Elements within one another; the files that are read have seven."""
