@@ -4,7 +4,20 @@ from __future__ import annotations
 
 import signal
 
-from benchmarks.soak import fits, kills, places, runs, texts
+from benchmarks.soak import (
+    cases,
+    exports,
+    fits,
+    fitting,
+    flights,
+    impacts,
+    kills,
+    packages,
+    places,
+    runs,
+    sweeps,
+    tracks,
+)
 from benchmarks.soak.outcome import Area
 
 AREAS = (
@@ -24,19 +37,24 @@ AREAS = (
     Area("checkpoint edited, swapped, bombs", (26, 14, 8, 0, 4, 0), runs.edited),
     Area("flow.npz damaged", (11, 0, 11, 0, 0, 0), runs.pictures),
     Area("kept runs: tables cut, run.json edited", (42, 17, 4, 0, 21, 0), runs.kept),
-    Area("camera tracks", (59, 58, 0, 0, 1, 0), texts.tracks),
+    Area("camera tracks", (59, 58, 0, 0, 1, 0), tracks.tracks),
     Area("paths (names, links, pipes, devices)", (16, 13, 1, 0, 0, 2), places.paths),
-    Area("conditions TOML", (36, 27, 5, 1, 3, 0), texts.conditions),
-    Area("case TOML (simulate, bounce)", (60, 47, 9, 0, 3, 1), texts.cases),
-    Area("impacts tables", (35, 31, 2, 1, 1, 0), texts.impact_tables),
-    Area("digitizer JSON and CSV", (42, 34, 4, 0, 2, 2), texts.digitized),
-    Area("fit.json through predict, design", (75, 11, 12, 0, 37, 15), texts.fit_files),
-    Area("predict options", (14, 10, 0, 0, 4, 0), texts.predict_options),
-    Area("formulas (--law)", (82, 82, 0, 0, 0, 0), texts.formulas),
-    Area("--bounds, other fit options", (35, 29, 2, 0, 4, 0), texts.fit_options),
-    Area("data packages, schemas", (52, 44, 2, 0, 6, 0), texts.packages),
+    Area("conditions TOML", (36, 27, 5, 1, 3, 0), tracks.conditions),
+    Area("case TOML (simulate, bounce)", (60, 47, 9, 0, 3, 1), cases.cases),
+    Area("impacts tables", (35, 31, 2, 1, 1, 0), impacts.impact_tables),
+    Area("digitizer JSON and CSV", (42, 34, 4, 0, 2, 2), impacts.digitized),
+    Area("fit.json through predict, design", (75, 11, 12, 0, 37, 15), fitting.fit_files),
+    Area("predict options", (14, 10, 0, 0, 4, 0), fitting.predict_options),
+    Area("formulas (--law)", (82, 82, 0, 0, 0, 0), fitting.formulas),
+    Area("--bounds, other fit options", (35, 29, 2, 0, 4, 0), fitting.fit_options),
+    Area("data packages, schemas", (52, 44, 2, 0, 6, 0), packages.packages),
     Area("fits: points, sigmas, censoring", (27, 26, 0, 0, 1, 0), fits.points),
     Area("simulations: densities, sizes, drive", (35, 33, 0, 0, 2, 0), fits.simulations),
     Area("same bytes in any environment", (39, 39, 0, 0, 0, 0), places.same_bytes),
+    Area("exports of laws and cases", None, exports.exports),
+    Area("scores (validate --trajectory)", None, flights.trajectories),
+    Area("settings of tracks", None, flights.settings),
+    Area("fits of flights: prior, start, release", None, flights.whole_flights),
+    Area("sweeps", None, sweeps.sweeps),
     Area("closed and full pipes", (7, 7, 0, 0, 0, 0), places.pipes_out),
 )  # fmt: skip

@@ -9,7 +9,7 @@ from benchmarks.soak import inputs
 from benchmarks.soak.kills import SHORT
 from benchmarks.soak.outcome import Attempt, Outcome, either, refused
 from benchmarks.soak.running import Workshop
-from benchmarks.soak.texts import tried
+from benchmarks.soak.trying import tried
 
 HEADS = (
     "source,stokes,stokes_sigma,e_eff,e_eff_sigma,outcome,e_eff_upper,e_dry,stokes_convention,speed_definition\n"

@@ -58,7 +58,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.doubts import refuse
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
-    from restitution.foreign.settings import Settings
+    from restitution.foreign.settings import of_options
     from restitution.laws.source_abstract_eq4 import READINGS
     from restitution.stokes import H_FILM
 
@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> None:
         raise InputError(Defect(rule, field="--speed", value=args.speed))
     how = fit_options.reading_of(args)
     if args.release is not None:
-        how = replace(how, track=Settings(release=args.release).over(how.track))
+        how = replace(how, track=of_options(release=args.release).over(how.track))
     wakes = {"auto": (False, True), "on": (True,), "off": (False,)}[args.wake]
     plans = {
         law: fit_options.plan_of(args, law, args.law_stokes or how.stokes or "st", strict=args.law is not None)

@@ -63,13 +63,13 @@ def settings_of(args: argparse.Namespace) -> Settings:
     import math
 
     from restitution.errors import Defect, InputError
-    from restitution.foreign.settings import Settings, read_settings
+    from restitution.foreign.settings import of_options, read_settings
 
     if args.fps is not None and not 0 < args.fps < math.inf:
         raise InputError(Defect("must be positive and finite", field="--fps", value=f"{args.fps:g}"))
     given_columns = once("--column", args.column)
     columns = {_TRACK_COLUMNS[name]: own for name, own in given_columns.items() if name in _TRACK_COLUMNS}
-    given = Settings(
+    given = of_options(
         unit=args.unit,
         time_unit=args.time_unit,
         frames_per_second=args.fps,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution import datasets
+from restitution.conditions import LARGEST, SMALLEST
 from restitution.foreign.settings import Settings
 from restitution.foreign.track import COLUMNS, ForeignTrack, Quantity
 from restitution.inputs import read_bytes
@@ -49,6 +50,8 @@ def read_long_track(path: str | Path, settings: Settings) -> ForeignTrack | None
         return None
     numbers = table.to_numpy()
     whole = len(table) == rows and body.count(b",") == rows and np.isfinite(numbers).all()
+    sizes = np.abs(numbers).max(axis=0, initial=0.0)
+    whole = whole and bool(((sizes == 0) | ((sizes >= SMALLEST) & (sizes <= LARGEST))).all())
     if not whole or not (np.diff(table.time_s.to_numpy()) > 0).all():
         return None
     schema = datasets.schema("trajectory" if quantity == "gap" else "settling")

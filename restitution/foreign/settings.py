@@ -9,19 +9,22 @@ rows of an image do), L and L_t the units of length and time. A velocity is s v 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationError
 
-from restitution.conditions import Conditions, Positive, Record, defects_of
+from restitution.conditions import LARGEST, SMALLEST, Conditions, Positive, Record, defects_of
 from restitution.errors import Defect, InputError
 from restitution.foreign.number_text import Decimal
 from restitution.inputs import read_toml
 from restitution.units import LENGTH, PURE, SPEED, TIME, Dimension, Quantity, UnitError, quantity
 
 Text = Annotated[str, Field(min_length=1)]
+_OPTIONS = {"frames_per_second": "--fps", "time_unit": "--time-unit"} | dict.fromkeys(
+    ("time", "position", "velocity"), "--column"
+)
 
 
 class Settings(Record):
@@ -39,7 +42,7 @@ class Settings(Record):
     time: Text | None = None
     position: Text | None = None
     velocity: Text | None = None
-    particle: str | int | None = None
+    particle: Text | int | None = None
     time_unit: Text | None = None
     unit: Text | None = None
     frames_per_second: Positive | None = None
@@ -57,6 +60,16 @@ class Settings(Record):
     def stated(self) -> dict[str, Any]:
         """What is given."""
         return self.model_dump(exclude_none=True)
+
+
+def of_options(**given: Any) -> Settings:
+    """Settings of the command line's options, which a defect names."""
+    try:
+        return Settings(**given)
+    except ValidationError as error:
+        # A field that may be of several types has a defect of each.
+        found = {f"{d.field}".partition(".")[0]: d for d in defects_of(error, None)}
+    raise InputError(*(replace(d, field=_OPTIONS.get(name, f"--{name}")) for name, d in found.items()))
 
 
 def read_settings(path: str | Path) -> Settings:
@@ -122,6 +135,8 @@ class Units:
             raise InputError(Defect(f"has no unit; it must be {what}", field=option, value=unit))
         if found != dimension or not value > 0:
             raise InputError(Defect(f"must be {what}", field=option, value=unit))
+        if not SMALLEST <= value <= LARGEST:
+            raise InputError(Defect(f"is {value:g} in SI, beyond any size of a track", field=option, value=unit))
         return value
 
     def _quantity(self, unit: str, option: str) -> Quantity:

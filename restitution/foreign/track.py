@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from restitution import datasets
-from restitution.conditions import Conditions
+from restitution.conditions import LARGEST, SMALLEST, Conditions
 from restitution.errors import Defect, InputError
 from restitution.foreign.asking import overridden, what_is_needed
 from restitution.foreign.settings import Settings, Units
@@ -134,9 +134,22 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
     names = {"time_s": columns.time, COLUMNS[columns.quantity]: columns.value}
     scale = {"time_s": time_unit, COLUMNS[columns.quantity]: unit}
     frames = read_table(kept.text(), datasets.schema(_SCHEMAS[columns.quantity]), names, scale)
+    _in_reach(frames, table.file)
     level = _gap_from(frames, settings, conditions, unit, columns.quantity, table.file)
+    _in_reach(frames, table.file)
     sized = conditions is not None
     return ForeignTrack(frames, _in_words(table, settings, columns, level, sized), (*notes, *lost), unit)
+
+
+def _in_reach(frames: pd.DataFrame, file: str) -> None:
+    """Raise unless times and values are of a size that powers and differences of them can be made of."""
+    for name in frames.columns.intersection(["time_s", *COLUMNS.values()]):
+        size = frames[name].abs().max()
+        if size > LARGEST or 0 < size < SMALLEST:
+            rule = (
+                f"reaches {size:.3g} in SI, which is no size of a track: is its unit, or --wall, what was meant?"
+            )
+            raise InputError(Defect(rule, file=file, field=name))
 
 
 def _of_particle(table: ForeignTable, settings: Settings) -> ForeignTable:

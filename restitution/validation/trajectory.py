@@ -124,7 +124,7 @@ def score(
     Raises
     ------
     InputError : for a track without a contact, and one that meets the wall so much faster or slower than the
-        record that a unit must be wrong.
+        record that a unit must be wrong; for a first contact outside the track.
     """
     errors = errors if errors is not None else Errors(grid=0.0)
     found = find_impacts(track, case.conditions, Speed.FAR, record=name, kind="simulated")
@@ -135,6 +135,9 @@ def score(
         own.append("velocities: the moment of a contact is known to a step, and times between contacts to that")
     else:
         track, own = _from_rest(track, case.conditions.sphere.diameter)
+    if first_s is not None and not track.time_s[0] <= first_s <= track.time_s[-1]:
+        rule = f"is outside the trajectory, {track.time_s[0]:g} to {track.time_s[-1]:g} s"
+        raise InputError(Defect(rule, file=name, field="--first-contact", value=f"{first_s:g} s"))
     bounces = filmed(track, case.conditions, first_s)
     values = _values(bounces, track, found, case)
     row = _row(name, case, errors)

@@ -48,6 +48,63 @@ def test_sizes_beyond_anything_are_refused_by_field(field, value, here, capsys):
     assert lines[0].startswith("error: conditions.toml: ")
 
 
+@pytest.mark.parametrize(
+    "options",
+    [["--wall", "1e300"], ["--wall", "-1e13"], ["--unit", "1e-200m"], ["--unit", "1e300m"],
+     ["--time-unit", "1e300s"], ["--time-unit", "1e-300s"], ["--unit", "d", "--pixel", "1e300m"],
+     ["--fps", "1e13"]],
+)  # fmt: skip
+@pytest.mark.parametrize("command", ["impacts", "fit"])
+def test_tracks_of_no_size_are_refused(options, command, here, capsys):
+    """Numbers whose squares or differences overflow, whichever option or unit has made them."""
+    (here / "conditions.toml").write_text(FLUID)
+    (here / "track.csv").write_text(datasets.load("gondret2002_st152").iloc[:45].to_csv(index=False))
+    flight = ["--trajectory", "--wake", "off"] if command == "fit" else []
+    if options[-2] == "--pixel":
+        options = ["--unit", "px", *options[-2:]]
+    lines = refused(capsys, command, "track.csv", "--conditions", "conditions.toml", *flight, *options)
+    assert any(word in lines[-1] for word in ("track.csv", "--unit", "--time-unit", "--fps", "--wall"))
+
+
+@pytest.mark.parametrize("time", ["inf", "1e12", "-1e300", "nan", "-0.5"])
+def test_a_first_contact_outside_the_trajectory_is_refused(time, here, capsys):
+    (here / "track.csv").write_text(datasets.load("gondret2002_st152").to_csv(index=False))
+    command = ("validate", "--trajectory", "track.csv", "--case", "gondret-st152", "--out", "card")
+    assert "first" in refused(capsys, *command, f"--first-contact={time}")[-1]
+    assert not list((here / "card").glob("*"))
+
+
+@pytest.mark.parametrize("size", ["1e300m", "1e-300m", "1e17mm"])
+def test_releases_of_no_size_are_refused(size, here, capsys):
+    (here / "conditions.toml").write_text(FLUID)
+    (here / "track.csv").write_text(datasets.load("gondret2002_st152").iloc[:45].to_csv(index=False))
+    command = ("fit", "track.csv", "--conditions", "conditions.toml", "--trajectory", "--wake", "off")
+    assert "release" in refused(capsys, *command, "--release", size)[-1]
+
+
+@pytest.mark.parametrize(
+    "option",
+    ["--unit", "--time-unit", "--pixel", "--particle", "--column=gap_m=", "--column=time_s=", "--release"],
+)
+def test_options_of_tracks_that_are_empty_are_refused_by_name(option, here, capsys):
+    (here / "conditions.toml").write_text(FLUID)
+    (here / "track.csv").write_text(datasets.load("gondret2002_st152").iloc[:45].to_csv(index=False))
+    given = [option] if "=" in option else [option, ""]
+    lines = refused(capsys, "fit", "track.csv", "--conditions", "conditions.toml", "--trajectory", *given)
+    assert option.partition("=")[0] in " ".join(lines)
+
+
+@pytest.mark.filterwarnings("ignore:The 'float_precision'")  # of pandas 3.1; what it asks for rounds in older ones
+@pytest.mark.parametrize("times", [1e200, 1e-200])
+@pytest.mark.parametrize("rows", [45, 90_000])
+def test_gaps_of_no_size_are_refused(times, rows, here, capsys):
+    """By the reader of long tracks as by the general one."""
+    (here / "conditions.toml").write_text(FLUID)
+    lines = [f"{0.001 * k:.9f},{times * (1.0 + abs(k % 20 - 10)):.12g}\n" for k in range(rows)]
+    (here / "track.csv").write_text("time_s,gap_m\n" + "".join(lines))
+    assert "track.csv" in refused(capsys, "impacts", "track.csv", "--conditions", "conditions.toml")[0]
+
+
 @pytest.mark.parametrize("key", ["release.speed", "release.gap_d", "numerics.height_d", "run.after_contact"])
 @pytest.mark.parametrize("value", ["1e308", "1e13", "9" * 300])
 def test_cases_beyond_anything_are_refused_by_field(key, value, here, capsys):
