@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 SLURM = "slurm:"
 JOBS = "jobs"
 _SECONDS_TO_ANSWER = 15
+_LOUD = ("distributed", "tornado", "asyncio")
 _AHEAD = 2
 """Runs that each thread of a worker has, one of them waiting."""
 _OURS = {"scheduler", "self", "job_cls", "loop", "asynchronous", "n_workers", "scheduler_cls", "job_kwargs"}
@@ -49,6 +51,8 @@ def dask_engine(scheduler: str) -> Iterator[Engine]:
     _import()
     from distributed import Client
 
+    for name in [n for n in logging.root.manager.loggerDict if n.split(".")[0] in _LOUD]:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # what is wrong is said by the driver, in a line
     if scheduler.startswith(SLURM):
         with slurm_cluster(scheduler.removeprefix(SLURM)) as (cluster, jobs):
             cluster.scale(jobs=jobs)

@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from restitution.campaigns.fork import APPROACHES
 from restitution.campaigns.manifest import FINISHED, RETRY, Manifest, line
 from restitution.campaigns.plan import RUNS, Planned
 from restitution.campaigns.run import CLAIM
@@ -38,9 +39,9 @@ def retry(folder: Path, runs: Iterable[Planned], manifest: Manifest) -> int:
 
 
 def clean(folder: Path, runs: Sequence[Planned], manifest: Manifest) -> int:
-    """Remove folders of runs that the plan has no more, and checkpoints of runs that are over; bytes removed.
+    """Remove folders of runs that the plan has no more, checkpoints of runs that are over, and approaches of none.
 
-    What a process is at is left alone.
+    What a process is at is left alone. Returns the bytes removed.
     """
     planned, removed = {r.run: r for r in runs}, 0
     places = sorted((folder / RUNS).iterdir()) if (folder / RUNS).is_dir() else []
@@ -48,13 +49,22 @@ def clean(folder: Path, runs: Sequence[Planned], manifest: Manifest) -> int:
         if is_held(place / CLAIM):
             continue
         if place.name not in planned:
-            removed += sum(p.stat().st_size for p in place.rglob("*") if p.is_file())
-            shutil.rmtree(place)
+            removed += _remove(place)
         elif manifest.of(place.name).over:
             for path in (p for p in place.iterdir() if p.name in _NEEDED_ONCE or p.name.endswith(".part")):
                 removed += path.stat().st_size
                 path.unlink()
+    if all(manifest.of(r.run).over for r in runs) and (folder / APPROACHES).is_dir():
+        for place in (folder / APPROACHES).iterdir():
+            if not is_held(place / CLAIM):
+                removed += _remove(place)
     return removed
+
+
+def _remove(place: Path) -> int:
+    size = sum(p.stat().st_size for p in place.rglob("*") if p.is_file())
+    shutil.rmtree(place)
+    return size
 
 
 def _gone(place: Path) -> bool:
