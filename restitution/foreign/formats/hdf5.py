@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import pickle
+import pickletools
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 MAGIC = b"\x89HDF"
 _MOST = 2**28
 """Bytes of an array, compared before any of it is read."""
+_SURE, _EASED = 2**22, 256
+"""Bytes that are read whatever the file stores of them; beyond, so many times what it stores."""
 _MOST_NAMES = 2**16
 _TABLES = 2**17
 """Groups that are looked at: one a frame."""
@@ -143,14 +146,24 @@ def _labels(kind: Any) -> list[Any]:
     data = bytes(kind) if isinstance(kind, bytes | np.bytes_) else str(kind).encode("utf-8")
     if len(data) > _MOST_NAMES:
         raise ValueError("the names of its columns are too long")
-    labels = _Plain(io.BytesIO(data)).load()
-    return [tuple(label) if isinstance(label, tuple | list) else label for label in labels]
+    # Places of the memo are allocated up to the one that is named.
+    if any(code.name.endswith("PUT") and int(place) > len(data) for code, place, _ in pickletools.genops(data)):
+        raise ValueError("the names of its columns are damaged")
+    labels = [
+        tuple(label) if isinstance(label, tuple | list) else label for label in _Plain(io.BytesIO(data)).load()
+    ]
+    # A name may be on levels, no deeper: what holds itself many times over is longer than any memory as a text.
+    parts = [part for label in labels for part in (label if isinstance(label, tuple) else (label,))]
+    if not all(isinstance(part, str | int | float | bytes | None) for part in parts):
+        raise ValueError("the names of its columns are not texts")
+    return labels
 
 
 def _array(dataset: Any) -> NDArray:
     """The content of a dataset that is no larger than is sensible and lies in the file itself."""
     size = int(dataset.size) * max(1, int(dataset.dtype.itemsize))
-    if size > _MOST or dataset.is_virtual or dataset.external:
+    stored = int(dataset.id.get_storage_size())
+    if size > min(_MOST, max(_SURE, _EASED * stored)) or dataset.is_virtual or dataset.external:
         raise ValueError(f"{dataset.name}: {size} bytes, or not in this file")
     return np.asarray(dataset[()])
 

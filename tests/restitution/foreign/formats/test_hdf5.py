@@ -1,6 +1,7 @@
 """Tracks as pandas and SLEAP store them in HDF5: the same places; what is damaged or could run is refused."""
 
 import pickle
+import tracemalloc
 
 import h5py
 import numpy as np
@@ -112,3 +113,48 @@ def test_a_store_that_is_cut_off_is_refused(tmp_path, part):
     (tmp_path / "cut.h5").write_bytes(data[: 8 + int(part * len(data))])
     with pytest.raises(InputError):
         read_foreign(tmp_path / "cut.h5")
+
+
+def of_names(pickled):
+    """A table whose names are this pickle."""
+
+    def write(file):
+        pandas_table(file.create_group("tracks"), [("values_block_0", ["y", "x"], np.c_[Y, Y])])
+        file["tracks/table"].attrs["values_block_0_kind"] = np.void(pickled)
+
+    return write
+
+
+def laughs():
+    """Two names of a few hundred bytes, a text of each longer than any memory."""
+    inner = ("a", "b")
+    for _ in range(60):
+        inner = (inner, inner)
+    return pickle.dumps([[inner, "x"], [inner, "y"]], protocol=2)
+
+
+def zeros(file):
+    file.create_dataset("tracks", (1, 2, 1, 2**23), "f8", chunks=(1, 2, 1, 2**16), compression="gzip")
+
+
+def deflated(file):
+    zeros(file)
+    file["tracks"][...] = 0.0
+
+
+@pytest.mark.parametrize(
+    "write",
+    [of_names(laughs()), of_names(b"]r\xff\xff\xff\x7f."), of_names(b"]p999999999\n."), zeros, deflated],
+    ids=["laughs", "a far place of the memo", "the same in text", "zeros", "deflated zeros"],
+)  # fmt: skip
+def test_small_files_of_much_memory_are_refused_before_it_is_taken(tmp_path, write):
+    path = tmp_path / "bomb.h5"
+    with h5py.File(path, "w") as file:
+        write(file)
+    tracemalloc.start()
+    try:
+        with pytest.raises(InputError, match="bomb"):
+            read_foreign(path)
+        assert tracemalloc.get_traced_memory()[1] < 5e7
+    finally:
+        tracemalloc.stop()
