@@ -1,8 +1,8 @@
 """What a sweep costs beside its runs, what a second process gains, what shared approaches save, how fast it lists.
 
-Runs are of the 3 mm sphere of Gondret et al. at 10 cells a diameter, single-threaded; the load of the machine is
-printed beside every figure, for times are by the clock. A sweep's overhead is what its wall time has beside the
-seconds that its runs state: start of the processes, set-up, writing, manifest.
+Runs are of the 3 mm sphere of Gondret et al. at 10 and 14 cells a diameter, of one thread each; the load of the
+machine is printed beside every figure, for times are by the clock. A sweep's overhead is what its wall time has
+beside the seconds that its runs state: start of the processes, set-up, writing, manifest.
 
     python -m benchmarks.sweeps            # all of it, some minutes
     python -m benchmarks.sweeps listing    # processes, forks, listing: parts of it
@@ -27,7 +27,7 @@ CASE = """
 base = "gondret_st152_10"
 [case]
 release = {{ kind = "drive", gap_d = {gap}, speed = 0.3, ramp = 0.0005 }}
-numerics.cells_per_diameter = 10
+numerics.cells_per_diameter = {cells}
 numerics.lattice_speed = 0.05
 numerics.width_d = 6.0
 numerics.height_d = {height}
@@ -36,8 +36,8 @@ run.after_contact = {span}
 film.tension = ["50 kPa", 101325]
 sphere.e_dry = {e_dry}
 """
-LONG = {"gap": 1.0, "height": 11.0, "span": 0.15, "e_dry": [0.8, 0.97]}
-APPROACH = {"gap": 8.0, "height": 11.0, "span": 0.005, "e_dry": [0.8, 0.9, 0.97]}
+LONG = {"cells": 10, "gap": 1.0, "height": 11.0, "span": 0.15, "e_dry": [0.8, 0.97]}
+APPROACH = {"cells": 14, "gap": 8.0, "height": 11.0, "span": 0.005, "e_dry": [0.8, 0.9, 0.97]}
 """A study of the first rebound: the way to the wall is 8 d, what is recorded after the contact some 0.5 d."""
 ENTRIES = 100_000
 

@@ -147,6 +147,8 @@ class _State:
                 stop = f"{job.run} is finished, says its worker, but is not in {job.folder}: do they share it?"
             else:
                 ends.append((job, _line(outcome, _reached(job.folder) > before)))
+                if outcome.state == FINISHED and outcome.message:
+                    self.say(f"{job.run}: {outcome.message}")
                 self.progress.made += outcome.made
                 self.progress.seconds += outcome.seconds * outcome.made
         self.manifest.append(entry for _, entry in ends)

@@ -10,7 +10,6 @@ import errno
 import os
 import sys
 import time
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -83,9 +82,9 @@ def perform(task: Task | Approach) -> Outcome:
             found = _finished(folder)
             if found is not None:
                 return Outcome(task.run, FINISHED, seconds=found, made=False)
-            _make(task, folder)
+            remark = _make(task, folder)
             _to_disk(folder)
-            return Outcome(task.run, FINISHED, seconds=_finished(folder) or 0.0)
+            return Outcome(task.run, FINISHED, remark, seconds=_finished(folder) or 0.0)
     except HeldError as error:
         return Outcome(task.run, ELSEWHERE, str(error))
     except DivergedError as error:
@@ -108,25 +107,32 @@ def _finished(folder: Path) -> float | None:
     return record.seconds
 
 
-def _make(task: Task, folder: Path) -> None:
+def _make(task: Task, folder: Path) -> str:
+    """Make the run; what is to be said of how."""
     if task.model == POINT_PARTICLE:
         _predict(task.case, folder)
-        return
+        return ""
     from restitution.runs.simulate import CHECKPOINT, can_resume, simulate
 
     if can_resume(folder, task.case):
         try:
             simulate(task.case, folder, resume=True, every_step=False)
-            return
+            return ""
         except HeldError:
             raise
         except InputError:  # one that can be told whose it is, but not be read on
             (folder / CHECKPOINT).unlink(missing_ok=True)
+    remark = ""
     if task.fork is not None:
-        with suppress(InputError):  # the whole way gives the same
+        try:
             simulate(task.case, folder, every_step=False, fork=Path(task.fork))
-            return
+            return ""
+        except HeldError:
+            raise
+        except InputError as error:  # the whole way gives the same
+            remark = f"cannot begin from its approach: {str(error).splitlines()[0]}"
     simulate(task.case, folder, every_step=False)
+    return remark
 
 
 def _approach(task: Approach, folder: Path) -> Outcome:
@@ -134,7 +140,9 @@ def _approach(task: Approach, folder: Path) -> Outcome:
 
     began = time.perf_counter()
     if not run_approach(task.case, task.edge, folder):
-        return Outcome(task.run, FAILED, "released too near to the wall")
+        return Outcome(
+            task.run, FAILED, "it is released too near to the wall, or too fast for its reference speed"
+        )
     _to_disk(folder)
     return Outcome(task.run, FINISHED, seconds=time.perf_counter() - began)
 

@@ -20,14 +20,17 @@ from restitution.runs.stand import CHECKPOINT, Stand
 from restitution.runs.validity.key import approach_key
 
 APPROACH = "approach.h5"
-_ABOVE = 2.5
-"""Edges of the film above the wall at which an approach ends: the next steps at most halve the gap."""
+_HALVED = 2.2
+"""The steps until a run is looked at next halve the gap, and somewhat more where the sphere gains speed."""
+_CELLS, _STEPS = 0.1, 3.0
+"""Before the edge, where film and contact are asked already (``matters`` of :mod:`lbm.spheres.wall_motion`)."""
 
 
 def run_approach(case: Case, edge: float, folder: str | Path) -> bool:
     """Run the approach of ``case`` to above ``edge`` d and leave its checkpoint in ``folder``.
 
-    One that was stopped is continued. False where there is none: the sphere is released too near to the wall.
+    One that was stopped is continued. False where there is none: the sphere is released too near to the wall, or
+    twice as fast as the reference speed, so that the run is not looked at before it is in the film.
     Errors as in :func:`restitution.runs.simulate.simulate`.
     """
     folder = Path(folder)
@@ -42,11 +45,12 @@ def run_approach(case: Case, edge: float, folder: str | Path) -> bool:
             except InputError:  # it cannot be read on
                 run, stand = _begin(case, folder)
         try:
-            while not run.finished and run.gap_d > _ABOVE * edge:
+            while not run.finished and run.gap_d > _HALVED * (edge + run.in_d(_CELLS, _STEPS)):
                 run.advance()
                 stand.frames.look(run)
                 stand.save_now_and_then()
-            if run.simulation.steps == 0 or run.finished:
+            too_far = run.finished or run.gap_d < edge + run.in_d(_CELLS, _STEPS)
+            if too_far or run.simulation.steps == 0:
                 return False
             stand.save()
         except BaseException:

@@ -94,6 +94,11 @@ class ResolvedRun:
         """Gap now, in diameters."""
         return float(self.spheres.centres[0, 2] - self.spheres.radii[0]) / self.flow.length
 
+    def in_d(self, cells: float, steps: float) -> float:
+        """So many cells and the way of so many steps, at least at the reference speed, in diameters."""
+        speed = max(-float(self.spheres.velocities[0, 2]), self.flow.speed)
+        return (cells + steps * speed) / self.flow.length
+
     @property
     def contacts(self) -> list[SolverContact]:
         """The contacts so far."""

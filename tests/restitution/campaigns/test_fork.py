@@ -54,8 +54,23 @@ def test_runs_of_one_approach_are_those_from_the_start_bit_for_bit(tmp_path):
     for name, more in (("forked", ()), ("whole", ("--no-forks",))):
         done = sweeps.run(file, "--out", tmp_path / name, *more)
         assert done.returncode == 0, done.stderr
+        assert "cannot begin" not in done.stderr
     assert len(list((tmp_path / "forked" / "approaches").glob("*/approach.h5"))) == 1
     assert sweeps.results(tmp_path / "forked") == sweeps.results(tmp_path / "whole")
+
+
+@pytest.mark.parametrize("change", [{"gap_d": 2.0}, {"kind": "rest", "gap_d": 1.0, "speed": None, "ramp": None}])
+def test_an_approach_ends_where_the_narrowest_film_can_still_begin(tmp_path, change):
+    case = shared(tmp_path)[0][0].case
+    numerics = case.numerics.model_copy(update={"reference_speed": 0.3})
+    case = case.model_copy(update={"release": case.release.model_copy(update=change), "numerics": numerics})
+    edge = set_up(case).edge_d
+    assert run_approach(case, edge, tmp_path / "approach")
+    run = ResolvedRun(case)
+    run.fork(tmp_path / "approach" / APPROACH, approach_key(case))
+    assert (
+        edge < run.gap_d < 0.34
+    )  # half the way from there, three steps and a tenth of a cell are left to the edge
 
 
 def test_an_approach_ends_above_the_film_and_is_refused_to_a_wider_one(tmp_path):
@@ -66,7 +81,7 @@ def test_an_approach_ends_above_the_film_and_is_refused_to_a_wider_one(tmp_path)
     fork = tmp_path / "approach" / APPROACH
     own = ResolvedRun(case)
     own.fork(fork, approach_key(case))
-    assert edge < own.gap_d < 3 * edge
+    assert edge < own.gap_d < 0.34
     wider = runs[2].case.model_copy(update={"contact": runs[2].case.contact.model_copy(update={"edge_d": 0.5})})
     with pytest.raises(InputError, match="may have acted"):
         simulate(wider, tmp_path / "wider", fork=fork)
