@@ -60,10 +60,23 @@ def _decoded(data: bytes, file: str) -> str:
             return data.decode("utf-16")
         except UnicodeDecodeError:
             raise InputError(Defect("is not UTF-16 text, as its first bytes say", file=file)) from None
+    if (unmarked := _unmarked_utf16(data)) is not None:
+        return unmarked
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         return data.decode(_code_page(data), errors="replace")
+
+
+def _unmarked_utf16(data: bytes) -> str | None:
+    """UTF-16 without its mark: most characters have a zero byte, as numbers do, all on one side; else None."""
+    sample = data[:_SAMPLE]
+    for first, order in ((1, "utf-16-le"), (0, "utf-16-be")):
+        high = sample[first::2]
+        if len(data) % 2 == 0 and 2 * high.count(0) > len(high) and 0 not in sample[1 - first :: 2]:
+            with contextlib.suppress(UnicodeDecodeError):
+                return data.decode(order)
+    return None
 
 
 def _code_page(data: bytes) -> str:

@@ -485,6 +485,7 @@ def test_other_xml_is_refused(tmp_path, text, named):
         ("cp1251", "Время", "Высота"), ("cp1253", "χρόνος", "ύψος"), ("gb18030", "时间", "高度"),
         ("cp1250", "čas", "výška"), ("cp1252", "temps", "hauteur à côté"), ("cp1250", "czas", "wysokość"),
         ("cp932", "時間", "高さ"), ("utf-16", "Время", "Высота"), ("cp1254", "süre", "yükseklik ğ"),
+        ("utf-16-le", "Время", "Höhe"), ("utf-16-be", "Время", "Höhe"),
     ],
 )  # fmt: skip
 def test_columns_are_named_in_any_script(tmp_path, page, time, height):
