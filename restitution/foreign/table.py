@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import groupby
 from pathlib import Path
 
@@ -42,17 +43,26 @@ class ForeignTable:
 
     def column(self, name: str) -> str | None:
         """The column of that name, in whatever case, of the only track, or of that number; None if none is."""
+        exact, lower, bare, last = self._names
         for known in (name, *mistaken(name)):
-            lower = known.lower()
-            for fits in (
-                [own for own in self.header if own == known],
-                [own for own in self.header if own.lower() == lower],
-                [own for own in self.header if without_unit(own).lower() == lower],
-                [own for own in self.header if without_unit(own).lower().rpartition("/")[2] == lower],
-            ):
+            low = known.lower()
+            for fits in (exact.get(known, ()), lower.get(low, ()), bare.get(low, ()), last.get(low, ())):
                 if len(fits) == 1:
                     return fits[0]
         return self.header[int(name) - 1] if name.isdecimal() and 0 < int(name) <= len(self.header) else None
+
+    @cached_property
+    def _names(self) -> tuple[dict[str, list[str]], ...]:
+        """The columns by their names: as they are, in lower case, without unit, and without the track besides.
+
+        Hundreds of names are looked up, and a hostile file has as many columns as it likes.
+        """
+        found: tuple[dict[str, list[str]], ...] = ({}, {}, {}, {})
+        for own in self.header:
+            bare = without_unit(own).lower()
+            for names, name in zip(found, (own, own.lower(), bare, bare.rpartition("/")[2]), strict=True):
+                names.setdefault(name, []).append(own)
+        return found
 
     @property
     def particle_column(self) -> str | None:
