@@ -4,6 +4,18 @@
 
 with rho of that cell too, after the extrapolation of Guo, Zheng & Shi, Phys. Fluids 14 (2002) 2007. Where that
 cell is no fluid, the mean over the fluid neighbours takes its place.
+
+A cell that the sphere covers is lost to the fluid with its momentum, one that comes free brings momentum with it.
+The links count only what crosses them, in the frame of the surface, which takes for granted that these cells move
+with the surface. On the lattice they do not: at Re 100 and ten cells a diameter the fluid gains 5 % more momentum
+than the links take from the sphere. So the sphere may get the rest, cell by cell::
+
+    p = +(j - rho u)  covered,      p = -(j - rho u)  freed,      u = x'_s - x_s + omega x r
+
+with j and rho of the cell and x'_s - x_s the way of the sphere in the step. Sphere and fluid then keep their
+momentum, to the mass that the account of :mod:`lbm.spheres.mass` has still to give back, and the drag is that of
+a sphere held in the equal stream. Whole cells cross at once, which is noise; so the sphere gets it over the time
+d/c_s that sound needs to pass it, exponentially.
 """
 
 from __future__ import annotations
@@ -16,20 +28,25 @@ from numba import njit
 from lbm.fluid.cache import kernel
 from lbm.fluid.equilibrium import equilibrium
 from lbm.fluid.lattice import incoming
-from lbm.fluid.stencil import C, Q
+from lbm.fluid.stencil import CS2, C, Q
 from lbm.spheres.surface import inside, inside_any, surface_velocity, wrapped
 
 
+def crossing_time(radius: float) -> float:
+    """Steps over which a sphere gets what cells that cross its surface bring: d/c_s."""
+    return 2 * radius / math.sqrt(CS2)
+
+
 @kernel(parallel=False)
-def refill(populations, grid, parity, before, surfaces, s):
+def refill(populations, grid, parity, before, surfaces, s, sums):
     """Fill the cells that sphere ``s`` covered with the centres ``before`` and no sphere covers now.
 
-    Returns the mass that the fluid gains: the deviations from rest of these cells, less those of the cells that
-    the sphere has covered.
+    ``sums`` (7,) get the force and torque on the sphere of all cells that changed sides, and the mass that the
+    fluid gains: the deviations from rest of those freed, less those of the covered ones.
     """
+    sums[:] = 0.0
     radius, centre = surfaces.radii[s], surfaces.centres[s]
     around = radius + 0.5
-    gain = 0.0
     for plane in range(math.floor(before[s, 2] - around), math.ceil(before[s, 2] + around) + 1):
         z = wrapped(plane, grid.nz, grid.z_low)
         if z < 0:
@@ -46,23 +63,40 @@ def refill(populations, grid, parity, before, surfaces, s):
                 was = inside(dx, dy, dz, radius)
                 if was == inside(cell + 0.5 - centre[0], row + 0.5 - centre[1], plane + 0.5 - centre[2], radius):
                     continue
+                u = surface_velocity(surfaces, s, dx, dy, dz)
+                way = (
+                    u[0] - surfaces.velocities[s, 0] + centre[0] - before[s, 0],
+                    u[1] - surfaces.velocities[s, 1] + centre[1] - before[s, 1],
+                    u[2] - surfaces.velocities[s, 2] + centre[2] - before[s, 2],
+                )
                 if not was:
                     if not inside_any(grid, x, y, z, before, surfaces.radii):
-                        gain -= _deviation(populations, grid, parity, x, y, z)
+                        _crossing(populations, grid, parity, (x, y, z), (dx, dy, dz), way, 1.0, sums)
                 elif not inside_any(grid, x, y, z, surfaces.centres, surfaces.radii):
-                    u = surface_velocity(surfaces, s, dx, dy, dz)
                     _fill(populations, grid, parity, (cell, row, plane), (dx, dy, dz), u, before, surfaces)
-                    gain += _deviation(populations, grid, parity, x, y, z)
-    return gain
+                    _crossing(populations, grid, parity, (x, y, z), (dx, dy, dz), way, -1.0, sums)
 
 
 @njit
-def _deviation(populations, grid, parity, x, y, z):
-    """Density less that at rest of a cell, of the populations that come in."""
-    drho = 0.0
+def _crossing(populations, grid, parity, place, r, u, sign, sums):
+    """Add what a cell at ``r`` from the centre gives the sphere that covers it (``sign`` 1) or frees it (-1)."""
+    x, y, z = place
+    drho = jx = jy = jz = 0.0
     for k in range(Q):
-        drho += populations[incoming(grid, parity, k, x, y, z)]
-    return drho
+        f = np.float64(populations[incoming(grid, parity, k, x, y, z)])
+        drho += f
+        jx += C[k, 0] * f
+        jy += C[k, 1] * f
+        jz += C[k, 2] * f
+    rho = 1 + drho
+    fx, fy, fz = sign * (jx - rho * u[0]), sign * (jy - rho * u[1]), sign * (jz - rho * u[2])
+    sums[0] += fx
+    sums[1] += fy
+    sums[2] += fz
+    sums[3] += r[1] * fz - r[2] * fy
+    sums[4] += r[2] * fx - r[0] * fz
+    sums[5] += r[0] * fy - r[1] * fx
+    sums[6] -= sign * drho
 
 
 @njit
