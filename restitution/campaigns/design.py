@@ -18,7 +18,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -57,7 +57,7 @@ class SweepFile(Record):
 
     base: str
     design: Literal["grid", "list", "latin hypercube", "sobol"] = "grid"
-    models: Annotated[tuple[Literal["resolved", "point particle"], ...], Field(min_length=1)] = (RESOLVED,)
+    models: tuple[Literal["resolved", "point particle"], ...] = (RESOLVED,)
     case: dict[str, Any] = Field(default_factory=dict)
     vary: dict[str, Any] = Field(default_factory=dict)
     runs: Annotated[int, Field(ge=1, le=MOST_RUNS)] | tuple[dict[str, Any], ...] | None = None
@@ -67,6 +67,8 @@ class SweepFile(Record):
     @model_validator(mode="after")
     def _of_one_design(self) -> SweepFile:
         """Each design has its own keys."""
+        if not self.models:
+            raise ValueError("names no model: 'resolved', 'point particle' or both")
         if self.design == "list":
             if self.vary or not isinstance(self.runs, tuple) or not self.runs:
                 raise ValueError("the design 'list' takes [[runs]], each with its own keys, and no [vary]")
@@ -112,7 +114,7 @@ class Sweep:
             ) from None
         self.content = over(content, self.asked.case)
         case_of(self.content, self.file, runnable=False)
-        self.varied = _ways(self.asked.vary)
+        self.varied = _ways(self.asked.vary, self.file)
         """What is given to each key that varies, by its dotted name."""
 
     @property
@@ -245,23 +247,25 @@ def _between(begin: float, end: float, scale: str, share: float) -> float:
     return float(f"{begin + share * (end - begin):.12g}")
 
 
-def _ways(given: Mapping[str, Any], within: str = "") -> dict[str, list | Range]:
+def _ways(given: Mapping[str, Any], file: str, within: str = "") -> dict[str, list | Range]:
     """Values or a range by dotted name; ``[vary]`` may write sections as tables."""
     found: dict[str, list | Range] = {}
     for key, value in given.items():
         name = f"{within}.{key}" if within else key
         if isinstance(value, dict) and not {"from", "to"} & set(value):
-            found |= _ways(value, name)
+            found |= _ways(value, file, name)
         elif isinstance(value, dict):
             try:
                 found[name] = Range.model_validate(value)
             except ValidationError as error:
-                raise InputError(*defects_of(error, f"vary.{name}")) from None
+                raise InputError(
+                    *(replace(d, field=f"vary.{name}.{d.field}") for d in defects_of(error, file))
+                ) from None
         elif isinstance(value, list) and value:
             found[name] = value
         else:
             rule = "must be a list of values, or a range as in { from = 1, to = 2 }"
-            raise InputError(Defect(rule, field=f"vary.{name}", value=str(value)))
+            raise InputError(Defect(rule, file=file, field=f"vary.{name}", value=str(value)))
     return found
 
 
