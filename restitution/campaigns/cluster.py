@@ -12,11 +12,13 @@ from __future__ import annotations
 import difflib
 import inspect
 import logging
+import signal
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from restitution.errors import Defect, InputError
 from restitution.inputs import read_toml
@@ -104,6 +106,7 @@ def slurm_cluster(file: str) -> Iterator[tuple[SLURMCluster, int]]:
 
 def keywords() -> set[str]:
     """What :class:`dask_jobqueue.SLURMCluster` takes, as its own signatures have it."""
+    _import()
     from dask_jobqueue.core import Job, JobQueueCluster
     from dask_jobqueue.slurm import SLURMJob
 
@@ -135,11 +138,15 @@ def _engine(client: Client, told: str) -> Engine:
     return Engine(client.get_executor(pure=False), at_once, lost, told)
 
 
-def _import() -> Any:
+def _import() -> None:
+    """Have the libraries loaded, and Ctrl-C as it was: dask-jobqueue makes it an exit when it is imported."""
+    interrupt = signal.getsignal(signal.SIGINT)
     try:
-        import dask_jobqueue
-        import distributed
+        import dask_jobqueue  # noqa: F401
+        import distributed  # noqa: F401
     except ImportError as error:
         rule = f"needs {error.name}: pip install 'restitution[cluster]'"
         raise InputError(Defect(rule, field="--scheduler")) from None
-    return dask_jobqueue, distributed
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGINT, interrupt)

@@ -1,6 +1,7 @@
 """A sweep on a real Dask scheduler with two workers, and what is left of it when each of them is killed."""
 
 import json
+import signal
 
 import pytest
 
@@ -102,4 +103,6 @@ def test_the_script_of_a_job_has_what_the_file_says(tmp_path):
     for line in ("#SBATCH -p long", "#SBATCH -A flow", "#SBATCH --cpus-per-task=4", "#SBATCH -t 02:00:00"):
         assert line in script.splitlines()
     assert "--nthreads 1" in script
+    interrupt = signal.getsignal(signal.SIGINT)
     assert {"queue", "account", "walltime", "cores", "memory", "processes", "worker_extra_args"} <= keywords()
+    assert signal.getsignal(signal.SIGINT) is interrupt

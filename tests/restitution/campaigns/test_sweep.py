@@ -228,7 +228,6 @@ def test_a_killed_driver_leaves_no_process_and_no_finished_run_is_lost(tmp_path)
         sweeps.kill(driver)
     before = {p: p.stat().st_mtime_ns for r in sweeps.finished(out) for p in (out / "runs" / r).glob("*.csv")}
     sweeps.until(lambda: not sweeps.under_way(out), 20)
-    assert list((out / "runs").glob("*/checkpoint.h5"))
     done = sweeps.run(file, "--out", out, "--no-forks")
     assert done.returncode == 0, done.stderr
     assert sorted(sweeps.finished(out).values()) == [1] * 6
