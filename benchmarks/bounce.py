@@ -1,6 +1,6 @@
 """The point-particle sphere against every shipped record: published closures, fitted ones, forces off, speed.
 
-    python -m benchmarks.bounce
+    python -m benchmarks.bounce [--terms]
 
 prints, in sphere diameters, the rms distance between model and frames from the first contact to t* = 8. The fits
 are plain least squares, all frames of all records alike; intervals are not their business.
@@ -8,6 +8,7 @@ are plain least squares, all frames of all records alike; intervals are not thei
 
 from __future__ import annotations
 
+import argparse
 import math
 import time
 from collections.abc import Callable, Iterable
@@ -22,6 +23,8 @@ from restitution import datasets, laws
 from restitution.bounce import Closures, OwnWake, Release, bounce
 from restitution.bounce.agreement import Agreement, agreement, release_of
 from restitution.bounce.sensitivity import forces_off
+from restitution.bounce.wake import STRENGTH, STRENGTH_SIGMA
+from restitution.calibration.trajectories.flights import DRAG_SIGMA, HISTORY_SIGMA
 from restitution.conditions import Conditions
 from restitution.laws.cavitation import ATMOSPHERE
 from restitution.laws.source_abstract_eq4 import READINGS
@@ -178,9 +181,41 @@ def speed(record: Record) -> Table:
     return made
 
 
+def terms(record: Record) -> Table:
+    """Each term of the forces as far off as it is known, or by another law: first apex and distance."""
+    whole = Closures(rebound=laws.get("eq4_exponential", K=10.65), wake=OwnWake())
+    made = table(
+        "what moves the first apex: Eq. (4) with K = 10.65, the wake of the resolved runs", "term", [record]
+    )
+    made.add_row("nothing", *cells([record], whole))
+    for name in ("brown_lawler_2003", "schiller_naumann_1935", "abraham_1970"):
+        made.add_row(f"drag: {name}", *cells([record], replace(whole, drag=laws.get(name))))
+    for name in (*HISTORY[1:], None):
+        history = laws.get(name) if name else None
+        made.add_row(f"history: {name or 'none'}", *cells([record], replace(whole, history=history)))
+    for sign in (-1, 1):
+        forces = {"drag_factor": 1 + sign * DRAG_SIGMA}, {"history_factor": 1 + sign * HISTORY_SIGMA}
+        for change in forces:
+            ((name, value),) = change.items()
+            made.add_row(f"{name} {value:g}", *cells([record], replace(whole, **change)))
+        c = STRENGTH + sign * STRENGTH_SIGMA
+        made.add_row(f"strength of the wake {c:.2f}", *cells([record], replace(whole, wake=OwnWake(c))))
+        K = 10.65 - 2 * sign
+        made.add_row(f"K {K:g}", *cells([record], replace(whole, rebound=laws.get("eq4_exponential", K=K))))
+    for c in (0.0, 0.5, 0.6, 1.0):
+        made.add_row(f"strength of the wake {c:g}", *cells([record], replace(whole, wake=OwnWake(c))))
+    return made
+
+
 def main() -> None:
-    """Print all tables."""
+    """Print all tables, or those that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--terms", action="store_true", help="what moves the first apex of St 152, alone")
+    only = parser.parse_args().terms
     console, everything = Console(width=200), records()
+    if only:
+        console.print(terms(everything[0]))
+        return
     for made in published(everything):
         console.print(made)
     console.print(resolved_film(everything))

@@ -30,7 +30,6 @@ from scipy.optimize import brentq, least_squares
 from scipy.special import stdtrit
 
 from restitution.calibration import Plan, estimate, model_of
-from restitution.calibration.estimation.identifiability import of_estimate
 from restitution.calibration.reading.observations import Observations
 from restitution.errors import InputError
 from restitution.files import write_whole
@@ -211,7 +210,7 @@ def one(name: str, how: str, c: Certified, reference: np.ndarray) -> dict:
         "interval_ends": float(np.nanmax(np.abs(ends - reference) / half[:, None])),
         "ends_compared": int(np.isfinite(reference).sum()),
         "condition": best.condition,
-        "doubts": sorted({d.name for d in of_estimate(best, fit.freedom)}),
+        "doubts": sorted({d.name for d in fit.own_doubts}),
         "processor_s": round(time.process_time() - begun, 2),
     }
 

@@ -2,12 +2,15 @@
 
 It is tried from the parameters' own starts, from places along the diagonal of their bounds and from a lattice that
 fills them, the most promising first, until the least of all sums of squares has been reached twice: a likelihood
-that is flat in the middle of the bounds has its valley elsewhere. A start that the caller gives is taken alone.
+that is flat in the middle of the bounds has its valley elsewhere. Where starts end in w different valleys, n
+searches leave a share w (w + 1)/(n (n - 1)) of the starts to valleys not yet seen (Boender & Rinnooy Kan 1987,
+Math. Program. 37, 59); more starts are then tried until it is small. A start that the caller gives is taken alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,13 +24,22 @@ _DIAGONAL = (0.02, 0.1, 0.3, 0.6)
 _A_PARAMETER = 64
 """Places of the lattice for each parameter."""
 _MOST_REFINED = 16
+UNSEEN = 0.05
+"""Share of starts, expected to lead to valleys not yet seen, from which on the least of the seen is in doubt."""
 _THE_SAME = 1e-4
 """Relative difference below which two sums of squares are one."""
 _BAD = 1e6
 """Stands for a residual without a finite value."""
 
 
-def first_guess(likelihood: Likelihood, given: Collection[str] = ()) -> NDArray:
+class Guess(NamedTuple):
+    """Values to search from; ``tried`` starts whose least may not be the least of all, or 0."""
+
+    values: NDArray
+    tried: int
+
+
+def first_guess(likelihood: Likelihood, given: Collection[str] = ()) -> Guess:
     """Least squares of the measured impacts, and the scatter left; ``given`` names the caller's starts."""
     from scipy.optimize import least_squares
 
@@ -37,7 +49,7 @@ def first_guess(likelihood: Likelihood, given: Collection[str] = ()) -> NDArray:
     seen = ~o.censored
     weight = 1 / np.hypot(o.e_sigma, 0.02)[seen]
     if not len(mean):
-        return values
+        return Guess(values, 0)
     size, directions = np.linalg.eigh(likelihood.jointly.precision)
     root = np.sqrt(np.maximum(size, 0.0))[:, None] * directions.T
 
@@ -71,20 +83,26 @@ def first_guess(likelihood: Likelihood, given: Collection[str] = ()) -> NDArray:
     if not starts:
         raise InputError(_nowhere(likelihood, values))
     starts.sort(key=lambda x: float(np.sum(misfit(x) ** 2)))
-    best, reached = None, 0
-    for x in starts[:_MOST_REFINED]:
+    starts, best, sure = starts[:_MOST_REFINED], None, len(starts) == 1
+    valleys: list[list[float]] = []  # costs of the searches that ended in each
+    for n, x in enumerate(starts, 1):
         fit = least_squares(misfit, x, bounds=(low, high), x_scale="jac")
-        same = best is not None and abs(fit.cost - best.cost) <= _THE_SAME * best.cost + 1e-300
-        reached = reached + 1 if same else 0 if best is None or fit.cost < best.cost else reached
         best = fit if best is None or fit.cost < best.cost else best
-        if reached:
+        place = next((v for v in valleys if abs(fit.cost - v[0]) <= _THE_SAME * v[0] + 1e-300), None)
+        if place:
+            place.append(fit.cost)
+        else:
+            valleys.append([fit.cost])
+        w, reached = len(valleys), len(min(valleys)) > 1
+        sure = sure or (reached and (w == 1 or w * (w + 1) <= UNSEEN * n * (n - 1)))
+        if sure:
             break
     values = at(best.x)
     left = float(np.sqrt(np.mean((o.e - likelihood.moments(values)[0])[seen] ** 2)))
     for j, p in enumerate(parameters):
         if not p.mean:
             values[j] = min(max(left if p.name == SCATTER else 0.5 * left, 1e-12), 0.5)
-    return values
+    return Guess(values, 0 if sure else len(starts))
 
 
 def _nowhere(likelihood: Likelihood, values: NDArray) -> Defect:

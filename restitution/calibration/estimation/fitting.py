@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.calibration.estimation.curvature import Curvature, nearby
-from restitution.calibration.estimation.first_guess import first_guess
-from restitution.calibration.estimation.identifiability import check_bounds, check_flat, of_estimate
+from restitution.calibration.estimation.first_guess import Guess, first_guess
+from restitution.calibration.estimation.identifiability import check_bounds, check_flat, of_estimate, of_search
 from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
 from restitution.calibration.estimation.maximum import LEVELS, Maximum, Thresholds, maximise
 from restitution.calibration.estimation.plan import Plan
@@ -35,6 +35,8 @@ class Fit(Showing):
     freedom: NDArray
     restricted: bool
     notes: tuple[str, ...]
+    tried: int = 0
+    """Starts of the search, where they leave a higher maximum likely; else 0."""
 
     @property
     def doubts(self) -> tuple[Doubt, ...]:
@@ -42,7 +44,13 @@ class Fit(Showing):
         about = doubts_about(self.likelihood.observations, self.plan.known_e_dry)
         earlier = self.plan.earlier
         twice = () if earlier is None else tuple(earlier.doubts(self.likelihood.observations))
-        return (*about, *twice, *of_estimate(self.maximum, self.freedom))
+        return (*about, *twice, *self.own_doubts)
+
+    @property
+    def own_doubts(self) -> tuple[Doubt, ...]:
+        """What is doubtful about the estimate itself."""
+        search = of_search(self.likelihood, self.maximum.values, self.tried)
+        return (*search, *of_estimate(self.maximum, self.freedom))
 
     def shown(self) -> Table:
         """The estimates with their standard errors; intervals and all else are in its result."""
@@ -82,7 +90,8 @@ def estimate(
     likelihood = plan.likelihood(observations)
     parameters = likelihood.parameters
     warm = near is not None
-    start, steps = (near.values, near.sigma) if warm else (first_guess(likelihood, plan.starts), None)
+    guess = Guess(near.values, 0) if near is not None else first_guess(likelihood, plan.starts)
+    start, steps = guess.values, near.sigma if near is not None else None
     if not warm:
         check_flat(likelihood, start)
     restriction = None
@@ -122,7 +131,7 @@ def estimate(
             best = settled(ended, function, curvature)
         else:
             best = replace(best, intervals=ended.intervals, open_ends=ended.open_ends, calls=ended.calls)
-    return Fit(plan, likelihood, best, freedom, restriction is not None, _notes(likelihood, best))
+    return Fit(plan, likelihood, best, freedom, restriction is not None, _notes(likelihood, best), guess.tried)
 
 
 def _notes(likelihood: Likelihood, best: Maximum) -> tuple[str, ...]:

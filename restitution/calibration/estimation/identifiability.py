@@ -8,6 +8,8 @@ another:
   differ by more than a factor, one of them is wrong or the error means little.
 - The curvature, scaled to a unit diagonal, has the ratio of its greatest to its least eigenvalue: beyond some
   ten digits nothing is left of the sixteen that the likelihood is computed with.
+- Starts that end in many places leave it likely that others end in a better one.
+- Impacts depart from the law by more than what rounding leaves of a sum of squares' curvature.
 """
 
 from __future__ import annotations
@@ -30,6 +32,9 @@ _FAR_OFF = 0.05
 """Standard errors from the maximum that are too many."""
 CONDITION = 1e10
 """Ratio of eigenvalues from which on errors and intervals are not believed."""
+
+ROUNDING = float(np.sqrt(np.finfo(float).eps))
+"""Error of e below which the misfit of the law is rounding."""
 
 
 def check_data(likelihood: Likelihood) -> None:
@@ -95,6 +100,25 @@ def check_flat(likelihood: Likelihood, values: NDArray) -> None:
             names = " and ".join(parameters[mean[free[i]]].name for i in np.flatnonzero(part > 0.1))
             rule = "the likelihood is flat along a combination of them: only that is determined; fix one"
             raise InputError(Defect(rule, field=names))
+
+
+def of_search(likelihood: Likelihood, values: NDArray, tried: int) -> Iterator[Doubt]:
+    """Doubts about where the estimate was found; ``tried`` starts that left others likely, or 0."""
+    if tried:
+        yield Doubt(
+            "starts",
+            f"{tried} starts ended in many maxima, and others may end in a higher one: narrow the bounds "
+            "(--bounds), or give starts (--start)",
+        )
+    o, names = likelihood.observations, [p.name for p in likelihood.parameters]
+    if SCATTER in names:
+        error = np.hypot(o.e_sigma[~o.censored], values[names.index(SCATTER)])
+        if np.max(error) < ROUNDING:
+            yield Doubt(
+                "scatter",
+                f"the impacts follow the law to {np.max(error):.1e}, as computed ones do and no measured ones: "
+                "rounding decides on parameters, errors and intervals; add e_eff_sigma",
+            )
 
 
 def of_estimate(best: Maximum, freedom: NDArray) -> Iterator[Doubt]:

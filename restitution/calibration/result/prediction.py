@@ -16,15 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.bounce.edges import passage
+from restitution.calibration.estimation.likelihood import OFFSET
 from restitution.calibration.estimation.maximum import LEVELS
+from restitution.calibration.estimation.plan import TYPICAL_OFFSET
 from restitution.calibration.result.bands import noisy_quantiles, quantiles
-from restitution.calibration.result.fit_result import FitResult, parameter_values
+from restitution.calibration.result.fit_result import FitResult, parameter_values, sources
 from restitution.calibration.result.kept_draws import kept, one_more
 from restitution.calibration.showing import Showing, Table
 from restitution.conditions import Conditions
 from restitution.errors import Defect, InputError
 from restitution.stokes import Speed, StokesNumber, film_edge
 
+FEW = 3
+"""Sources below which the prior decides how much a new one differs."""
 KNOTS = 256
 """Stokes numbers whose intervals are computed; of more they are interpolated."""
 _PARTS = tuple(0.5 * (1 + sign * level) for level in LEVELS for sign in (-1, 1))
@@ -103,7 +107,7 @@ def predict(
     )
     at_knots = law(knots, law.values)
     intervals, one = (_by_level(_spread_out(knots, ends, at_knots, St, value, scale)) for ends, scale in tables)
-    return Prediction(St, value, sigma, intervals, one, _warnings(result, St, law.e_dry))
+    return Prediction(St, value, sigma, intervals, one, _warnings(result, St, law.e_dry, source))
 
 
 def predict_at(
@@ -255,7 +259,7 @@ def _ratio(result: FitResult, convention: str, conditions: Conditions | None) ->
     return StokesNumber(1.0, result.stokes_convention).to(convention, conditions).value
 
 
-def _warnings(result: FitResult, St: NDArray, e_dry: float) -> tuple[str, ...]:
+def _warnings(result: FitResult, St: NDArray, e_dry: float, source: str | None) -> tuple[str, ...]:
     warnings = []
     low, high = result.stokes_range
     outside = St[(St < low) | (St > high)]
@@ -269,4 +273,17 @@ def _warnings(result: FitResult, St: NDArray, e_dry: float) -> tuple[str, ...]:
     estimated = any(p.name.startswith("e_dry") for p in result.parameters)
     if not estimated and not least - 0.02 <= e_dry <= most + 0.02:
         warnings.append(f"e_dry {e_dry:g} lies outside that of the calibration, {least:g} to {most:g}")
+    if source is None and len(known := sources(result)) < FEW:
+        if OFFSET in result.values:
+            rule = (
+                f"the fit has {len(known)} sources, which say little of how sources differ: the interval of one "
+                f"impact of a new one is mostly the prior of that, some {TYPICAL_OFFSET:g}; --source NAME for one "
+                "of the fit's"
+            )
+        else:
+            rule = (
+                "how much sources (laboratories, records) differ is not in the fit: one impact of a new one "
+                "may lie outside its interval more often than that says"
+            )
+        warnings.append(rule)
     return tuple(warnings)

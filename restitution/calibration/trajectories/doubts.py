@@ -1,7 +1,9 @@
 """What in a fit to whole trajectories makes one doubt its model, in words.
 
 The errors of the restitutions have the correlated noise in them, but not what another drag or history law would
-change. Where the forces of the model are not those of the flight, these signs show.
+change. Where the forces of the model are not those of the flight, these signs show. A factor of drag or history
+away from 1 is none within what was known of it beforehand, however exactly the frames tell it: the fit has taken
+it up.
 """
 
 from __future__ import annotations
@@ -20,7 +22,9 @@ if TYPE_CHECKING:
 KNOWN = 3.0
 """Conflict with what was known from which on a scale, a level, a factor of drag or history are a doubt."""
 EXCLUDED = 4.0
-"""Errors from 1 at which the frames exclude drag or history of the model."""
+"""Errors from 1 from which on the frames exclude the model's history force, for the doubt that they have none."""
+NOTHING = 2.0
+"""Errors from 0 within which the frames have none of a force."""
 NOISES = 5.0
 """Errors of reading from which on the correlated noise is one."""
 
@@ -47,7 +51,7 @@ def of_records(trajectories: Sequence[WholeTrajectory]) -> Iterator[Doubt]:
             )
         for name, known in ((DRAG, DRAG_SIGMA), (HISTORY, HISTORY_SIGMA)):
             value, sigma = t.unknowns[name]
-            if conflict(t, name, known) > KNOWN or abs(value - 1) > EXCLUDED * sigma:
+            if conflict(t, name, known) > KNOWN:
                 yield Doubt(
                     "forces",
                     f"the frames want {value:.2f} +- {sigma:.2f} times the {name.removesuffix('_factor')} of the "
@@ -55,6 +59,16 @@ def of_records(trajectories: Sequence[WholeTrajectory]) -> Iterator[Doubt]:
                     "has other forces",
                     r.name,
                 )
+        # Its prior reaches zero, but a fluid always has one: what has none was computed, or is not this flight.
+        history, sigma = t.unknowns[HISTORY]
+        if history < NOTHING * sigma and 1 - history > EXCLUDED * sigma:
+            yield Doubt(
+                "history",
+                f"the frames have no history force ({history:.2f} +- {sigma:.2f} of the model's): if "
+                "a solver made them, 'restitution impacts' needs no model; else fluid, sphere, scale or clock are "
+                "not as stated",
+                r.name,
+            )
         if conflict(t, "zero_m", r.level, 0.0) > KNOWN:
             yield Doubt(
                 "level",

@@ -255,3 +255,25 @@ def test_a_record_flies_with_its_own_level_of_a_separate_parameter():
         assert values_of(fit, record)["K"] == fit.maximum.values[names.index(f"K[{record}]")]
     with pytest.raises(InputError, match="lab 2"):
         values_of(fit, "lab 2")
+
+
+def test_impacts_that_follow_the_law_to_rounding_are_doubted():
+    St = np.geomspace(20, 300, 12)
+    exact = np.array([0.97 * np.exp(-17 / x) for x in St])
+    noisy = exact + 0.01 * np.random.default_rng(2).standard_normal(len(St))
+    names = [{d.name for d in estimate(plan(), observations(St, e)).own_doubts} for e in (exact, noisy)]
+    assert "scatter" in names[0]
+    assert names[1] == set()
+
+
+def test_one_valley_of_many_is_doubted():
+    """A wave of unknown period has a maximum at many periods; told where to begin, it has the right one."""
+    St = np.linspace(20, 300, 60)
+    e = 0.6 + 0.1 * np.sin(0.9 * St) + 0.01 * np.random.default_rng(3).standard_normal(len(St))
+    law, bounds = "b + 0.1*sin(w*St)", {"b": (0.1, 1.0), "w": (0.5, 1.5)}
+    found = estimate(plan(law, bounds=bounds, e_dry=1.0), observations(St, e))
+    right = abs(found.maximum.values[1] - 0.9) < 0.01
+    assert right or "starts" in {d.name for d in found.own_doubts}
+    told = estimate(plan(law, bounds=bounds, e_dry=1.0, starts={"b": 0.6, "w": 0.9}), observations(St, e))
+    assert told.maximum.values[1] == pytest.approx(0.9, abs=0.01)
+    assert "starts" not in {d.name for d in told.own_doubts}

@@ -112,7 +112,8 @@ def test_prediction_and_its_range(case):
     case("fit", name, "--out", "fit.json")
     pair = ["--fluid", "density=935,viscosity=0.01", "--sphere", "diameter=0.003,density=7800,e_dry=0.97"]
     status, out, err = case("predict", "fit.json", *pair, "--speed", "0.5")
-    assert (status, err) == (0, "")
+    assert status == 0
+    assert "sources" in err  # one laboratory tells nothing of the next
     St, e = (float(x) for x in out.splitlines()[-1].split()[1:3])
     assert St == pytest.approx(7800 * 0.5 * 0.003 / (9 * 0.01), rel=1e-3)  # by hand
     assert e == pytest.approx(0.97 * np.exp(-K * 1.97 / St), abs=0.01)
