@@ -247,8 +247,8 @@ def _known_of_offset(whole: Likelihood, values: NDArray, inside: NDArray, out: N
         shrink = omega**2 / (1 + omega**2 * np.bincount(s_in, w, n))
 
         def gain(x: NDArray) -> NDArray:
-            sums = np.stack([np.bincount(s_in, w * column, n) for column in x.T], axis=1)
-            return (shrink[:, None] * sums)[s_out]
+            sums = np.array([np.bincount(s_in, w * column, n) for column in x.T])
+            return (shrink[:, None] * sums.reshape(-1, n).T)[s_out]  # a law may have no free parameter
 
         return _Known(gain, np.diag(own) + shrink[s_out, None] * (s_out[:, None] == s_out))
     places = np.concatenate([np.flatnonzero(inside), np.flatnonzero(out)])

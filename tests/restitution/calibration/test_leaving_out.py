@@ -161,3 +161,15 @@ def test_an_offset_is_known_from_the_impacts_that_stay(tmp_path):
     expected = multivariate_normal.logpdf(o.e[out], f[out] + gain @ (o.e - f)[~out], S)
     assert omega > 0.005
     assert ranking.predictive(rest, whole, out) == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_law_without_free_parameters_is_ranked_over_two_sources(tmp_path):
+    """Offset and scatter alone are estimated: what the others tell of an impact is its source's offset."""
+    St = np.geomspace(20, 300, 12)
+    e = 0.97 * np.exp(-20 / St) + 0.02 * np.random.default_rng(4).standard_normal(len(St))
+    rows = [f"{x:.4f},{y:.4f},0.01,{'ab'[i % 2]}" for i, (x, y) in enumerate(zip(St, e, strict=True))]
+    path = tmp_path / "two.csv"
+    path.write_text("stokes,e_eff,e_eff_sigma,source\n" + "\n".join(rows) + "\n")
+    plan = Plan(model_of("eq4_exponential"), fixed={"K": 10.15}, e_dry=0.97)
+    ranked = ranking.rank([("none free", plan)], read([str(path)], stokes="st", speed="far"))
+    assert np.isfinite(ranked.scores[0].loo).all()
