@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from restitution import __version__
 from restitution.commands import (
     bounce,
+    calibrate_solver,
     cases,
     compare,
     data,
@@ -51,6 +52,7 @@ def build_parser() -> argparse.ArgumentParser:
         simulate,
         bounce,
         sweep,
+        calibrate_solver,
         report,
         validate,
     ):

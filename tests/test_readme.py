@@ -33,6 +33,7 @@ def test_every_runtime_dependency_has_its_line():
         *project["dependencies"],
         *project["optional-dependencies"]["dev"],
         *project["optional-dependencies"]["bench"],
+        *project["optional-dependencies"]["emulator"],
     ]
     table = README.split("## Dependencies")[1]
     for requirement in wanted:
@@ -41,4 +42,4 @@ def test_every_runtime_dependency_has_its_line():
 
 def test_commands_of_the_table_are_known():
     choices = next(a.choices for a in build_parser()._actions if a.dest == "command")
-    assert set(re.findall(r"\| `restitution (\w+)", README)) == set(choices)
+    assert set(re.findall(r"\| `restitution ([\w-]+)", README)) == set(choices)

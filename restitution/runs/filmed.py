@@ -61,14 +61,20 @@ def _interval(track: Track) -> float:
 
 
 def _as_filmed(trajectory: pd.DataFrame, case: Case) -> Track:
-    """The trajectory as the record's camera would have it, the contact in the middle between two frames."""
-    record = _camera(case)
-    if record is None:
-        return Track.from_table(trajectory)
-    interval = _interval(record)
-    time, gap = (trajectory[name].to_numpy() for name in ("time_s", "gap_m"))
+    """The trajectory as the record's camera would have it."""
+    return as_filmed(Track.from_table(trajectory), _camera(case))
+
+
+def as_filmed(track: Track, camera: Track | None) -> Track:
+    """The gaps of a simulated track as a camera has them, the contact in the middle between two frames.
+
+    Time counts from the contact. Without a camera, and where its frames would be too few, the track as it is.
+    """
+    if camera is None:
+        return track
+    interval, time = _interval(camera), track.time_s
     first, last = np.ceil(time[0] / interval - 0.5), np.floor(time[-1] / interval - 0.5)
     frames = interval * (np.arange(first, last + 1) + 0.5)
     if len(frames) < MINIMUM_FRAMES:
-        return Track.from_table(trajectory)
-    return Track(frames, np.interp(frames, time, gap), "gap", record.sigma)
+        return track
+    return Track(frames, np.interp(frames, time, track.value), "gap", camera.sigma)

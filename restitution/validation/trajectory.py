@@ -131,10 +131,10 @@ def score(
     approach = _approach(found, case, name)
     own: list[str] = []
     if track.quantity == "velocity":
-        track = _integrated(track, found)
+        track = integrated(track, found)
         own.append("velocities: the moment of a contact is known to a step, and times between contacts to that")
     else:
-        track, own = _from_rest(track, case.conditions.sphere.diameter)
+        track, own = from_rest(track, case.conditions.sphere.diameter)
     if first_s is not None and not track.time_s[0] <= first_s <= track.time_s[-1]:
         rule = f"is outside the trajectory, {track.time_s[0]:g} to {track.time_s[-1]:g} s"
         raise InputError(Defect(rule, file=name, field="--first-contact", value=f"{first_s:g} s"))
@@ -148,7 +148,7 @@ def score(
     return Scored(name, case, judged, bounces, [*notes, *found.notes, *own, *doubts])
 
 
-def _from_rest(track: Track, diameter: float) -> tuple[Track, list[str]]:
+def from_rest(track: Track, diameter: float) -> tuple[Track, list[str]]:
     """The gaps from where the sphere rests, where that is no matter of noise; what else their level says."""
     level, deepest = contacts(track).level or 0.0, float(np.min(track.value))
     if abs(level) > _AT_REST * diameter:
@@ -204,7 +204,7 @@ def _values(bounces: Bounces, track: Track, found: Impacts, case: Case) -> Value
     return values
 
 
-def _integrated(track: Track, found: Impacts) -> Track:
+def integrated(track: Track, found: Impacts) -> Track:
     """The gaps of a track of velocities, up to where the last flight that could be evaluated comes down."""
     touches = [row["time_s"] for row in found.rows]
     first = track.time_s < touches[0]

@@ -1,0 +1,314 @@
+r"""The parameters of a solver by its runs and measured records: posterior, what it says, what is doubtful.
+
+    p(theta, t_1, sigma_u, tau | frames) ~ prior(theta) prod p(frames | theta, ...) prior(t_1, sigma_u, tau),
+
+the product over the records, with the likelihood of :mod:`.likelihood` and a prior of theta that is uniform (in
+the logarithm where the runs lie more evenly so) within the runs, or what narrower range is given. Where it
+starts is found by the cross-entropy method (Rubinstein, Methodol. Comput. Appl. Probab. 1 (1999) 127), then
+emcee walks (:mod:`restitution.calibration.estimation.posterior`); all seeds are fixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.calibration.estimation.maximum import LEVELS, Maximum
+from restitution.calibration.estimation.parameters import Flat, Parameter, log_prior
+from restitution.calibration.estimation.posterior import Posterior, sample
+from restitution.calibration.reading.reading import Reading
+from restitution.doubts import Doubt
+from restitution.emulation.emulated import Emulated, read_all
+from restitution.emulation.held_out import Predicted, predicted
+from restitution.emulation.runs_table import Runs
+from restitution.errors import Defect, InputError
+
+Bounds = Mapping[str, tuple[float, float]]
+
+SAYS_NOTHING = 0.85
+"""Width of the 68 % interval over that of the prior from which on the records say nothing about a parameter."""
+EDGE = 0.05
+"""Part of the prior's width at each end that is looked at for a best point beyond the runs."""
+PRESSED = 2.5
+"""Times as much probability there as in the prior from which on it is taken to lie beyond."""
+_LARGE = 3.0
+"""Discrepancy over the error of a reading from which on the solver does not meet a record."""
+_ROUNDS, _POINTS, _BEST = 25, 400, 60
+"""Of the search for the start."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """What the records say of one parameter; intervals by level; ``share``: width of its 68 % over the prior's."""
+
+    name: str
+    prior: tuple[float, float]
+    logarithmic: bool
+    median: float
+    intervals: Mapping[float, tuple[float, float]]
+    share: float
+    pressed: str | None
+    """``low`` or ``high`` where the best values lie at that end of the runs, or beyond it."""
+
+    @property
+    def says_nothing(self) -> bool:
+        """Whether the posterior is as wide as the prior."""
+        return self.share > SAYS_NOTHING
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """Of one record: what the solver lacks, sigma_u in diameters, correlation time in ms; each median and 68 %."""
+
+    record: str
+    sigma_d: tuple[float, float, float]
+    tau_ms: tuple[float, float, float]
+    reading_d: float
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """One group of runs calibrated; ``draws`` (n, parameters) of the posterior, of theta alone."""
+
+    group: Runs
+    used: tuple[Emulated, ...]
+    held_out: tuple[Emulated, ...]
+    told: tuple[Told, ...]
+    correlation: NDArray
+    draws: NDArray
+    posterior: Posterior
+    discrepancies: tuple[Discrepancy, ...]
+    predictions: tuple[Predicted, ...]
+    before: Mapping[str, float] | None
+    doubts: tuple[Doubt, ...]
+    seed: int
+
+    @property
+    def recommended(self) -> dict[str, float]:
+        """The medians."""
+        return {t.name: t.median for t in self.told}
+
+
+def calibrate(
+    group: Runs,
+    records: Sequence[str] = (),
+    held_out: Sequence[str] = (),
+    prior: Bounds | None = None,
+    before: Mapping[str, float] | None = None,
+    how: Reading | None = None,
+    seed: int = 0,
+    say: Callable[[str], None] | None = None,
+) -> Calibration:
+    """The parameters of a group of runs.
+
+    Parameters
+    ----------
+    group : of :func:`restitution.emulation.runs_table.read_runs`.
+    records : those to be met; by default all that the runs simulate but those held out.
+    held_out : records that are predicted, and have no say.
+    prior : narrower ranges of parameters, uniform.
+    before : parameters that the solver had, to compare with; by default the whole prior.
+    how : what the numbers of tracks mean, and the conditions of records that are files.
+    seed : of the random numbers.
+    say : is told how far the work has come.
+
+    Raises
+    ------
+    InputError : naming what is wrong with runs, records or ranges, or that nothing can be predicted from the runs.
+    """
+    say = say or (lambda _: None)
+    used, out = _records(group, records, held_out)
+    say(f"emulators of {len(group.runs)} runs" + (f" of {group.label}" if group.label else ""))
+    known = read_all(group, [*used, *out], how or Reading())
+    mine, theirs = tuple(known[name] for name in used), tuple(known[name] for name in out)
+    parameters = parameters_of(group, mine, prior or {})
+    before = None if before is None else _before(group, before)
+    posterior = posterior_of(parameters, mine, seed, say)
+    p = len(parameters)
+    draws = posterior.draws[:, :p]
+    told = tuple(_told(x, draws[:, j]) for j, x in enumerate(parameters))
+    x = np.stack([_inner(t, draws[:, j]) for j, t in enumerate(told)], axis=1)
+    correlation = np.atleast_2d(np.corrcoef(x, rowvar=False))
+    discrepancies = tuple(
+        _discrepancy(e, posterior.draws[:, p + 3 * k : p + 3 * k + 3]) for k, e in enumerate(mine)
+    )
+    rng = np.random.default_rng(seed + 1)
+    prior_draws = np.stack([_uniform(x, rng, 400) for x in parameters], axis=1)
+    start = prior_draws if before is None else np.tile([before[n] for n in group.parameters], (400, 1))
+    predictions = tuple(
+        predicted(e, start, draws, rng, e in theirs) for e in (*mine, *theirs)
+    )  # fmt: skip
+    doubts = [
+        *group.doubts,
+        *(d for e in (*mine, *theirs) for d in e.doubts()),
+        *_doubts(group, told, discrepancies),
+    ]
+    return Calibration(
+        group, mine, theirs, told, correlation, draws, posterior, discrepancies, predictions, before,
+        tuple(dict.fromkeys(doubts)), seed,
+    )  # fmt: skip
+
+
+def posterior_of(
+    parameters: Sequence[Parameter],
+    records: Sequence[Emulated],
+    seed: int = 0,
+    say: Callable[[str], None] | None = None,
+) -> Posterior:
+    """Draws of the parameters, and of t_1, sigma_u and tau of each record in turn."""
+    likelihood = _Likelihood(records, len(parameters))
+    every = (*parameters, *(x for e in records for x in e.frames.nuisances))
+    return sample(likelihood, _start(likelihood, every, seed), seed, many=True, say=say)
+
+
+class _Likelihood:
+    """-ln L of all records at points (n, parameters and unknowns of the records)."""
+
+    def __init__(self, records: Sequence[Emulated], parameters: int):
+        self.records, self.parameters = records, parameters
+
+    def __call__(self, points: NDArray) -> NDArray:
+        theta = points[:, : self.parameters]
+        total = np.zeros(len(points))
+        for k, e in enumerate(self.records):
+            own = points[:, self.parameters + 3 * k : self.parameters + 3 * k + 3]
+            total -= e.frames.log(theta, *np.ascontiguousarray(own.T))
+        return total
+
+
+def _records(group: Runs, records: Sequence[str], held_out: Sequence[str]) -> tuple[list[str], list[str]]:
+    defects = []
+    for option, given in (("--record", records), ("--held-out", held_out)):
+        unknown = [name for name in given if name not in group.records]
+        rule = f"is simulated by no run{f' of {group.label}' if group.label else ''}; those are of "
+        rule += ", ".join(group.records)
+        defects += [Defect(rule, field=option, value=name) for name in unknown]
+    both = sorted(set(records) & set(held_out))
+    defects += [Defect("is to be met and held out at once", field="--held-out", value=name) for name in both]
+    used = list(dict.fromkeys(records)) or [name for name in group.records if name not in held_out]
+    if not used:
+        defects.append(Defect("leaves no record to be met", field="--held-out"))
+    if defects:
+        raise InputError(*defects)
+    return used, list(dict.fromkeys(held_out))
+
+
+def parameters_of(group: Runs, records: Sequence[Emulated], prior: Bounds) -> tuple[Parameter, ...]:
+    """Theta within what the runs of all records range over, or the narrower prior."""
+    ranges = np.array([e.emulator.ranges for e in records])
+    low, high = ranges[:, :, 0].max(axis=0), ranges[:, :, 1].min(axis=0)
+    defects, found = [], []
+    for name in prior:
+        if name not in group.parameters:
+            rule = f"is no parameter of the runs: {', '.join(group.parameters)}"
+            defects.append(Defect(rule, field="--prior", value=name))
+    for j, name in enumerate(group.parameters):
+        if not low[j] < high[j]:
+            rule = f"the runs of different records have no range of {name} in common"
+            defects.append(Defect(rule, file=group.file, field=name))
+            continue
+        a, b = prior.get(name, (low[j], high[j]))
+        if not low[j] <= a < b <= high[j]:
+            rule = (
+                f"must rise and lie within the runs, {low[j]:g} to {high[j]:g}: an emulator does not reach beyond"
+            )
+            defects.append(Defect(rule, field="--prior", value=f"{name}={a:g}:{b:g}"))
+            continue
+        scale = records[0].emulator.scales[j]
+        middle = (a * b) ** 0.5 if scale == "log" else 0.5 * (a + b)
+        found.append(Parameter(name, float(middle), (float(a), float(b)), "", scale, Flat(scale == "log")))
+    if defects:
+        raise InputError(*defects)
+    return tuple(found)
+
+
+def _before(group: Runs, given: Mapping[str, float]) -> dict[str, float]:
+    """The solver's own values, one each, within the runs."""
+    defects = [
+        Defect(f"is no parameter of the runs: {', '.join(group.parameters)}", field="--before", value=name)
+        for name in given
+        if name not in group.parameters
+    ]
+    for name, (low, high) in zip(group.parameters, group.ranges, strict=True):
+        if name not in given:
+            defects.append(Defect(f"has no value of {name}: all parameters or none", field="--before"))
+        elif not low <= given[name] <= high:
+            rule = f"must lie within the runs, {low:g} to {high:g}"
+            defects.append(Defect(rule, field="--before", value=f"{name}={given[name]:g}"))
+    if defects:
+        raise InputError(*defects)
+    return dict(given)
+
+
+def _start(likelihood: _Likelihood, parameters: Sequence[Parameter], seed: int) -> Maximum:
+    """A normal distribution of points that draws in on the best of its points, round by round."""
+    rng = np.random.default_rng(seed)
+    low, high = np.array([p.limits for p in parameters], float).T
+    mean = np.array([p.inward(p.start) for p in parameters])
+    sigma = np.where(np.isfinite(high - low), 0.3 * (high - low), 1.0)
+    for _ in range(_ROUNDS):
+        x = np.clip(mean + sigma * rng.standard_normal((_POINTS, len(parameters))), low, high)
+        values = np.array([[p.outward(v) for p, v in zip(parameters, row, strict=True)] for row in x])
+        prior = np.array([log_prior(parameters, v, every=False) for v in values])
+        best = x[np.argsort(likelihood(values) - prior, kind="stable")[:_BEST]]
+        mean, sigma = best.mean(axis=0), best.std(axis=0) + 1e-4 * (high - low)
+    values = np.array([p.outward(v) for p, v in zip(parameters, mean, strict=True)])
+    slope = np.array([p.slope(v) for p, v in zip(parameters, mean, strict=True)])
+    lowest = float(likelihood(values[None])[0])
+    return Maximum(tuple(parameters), values, np.diag((sigma * slope) ** 2), lowest, _ROUNDS * _POINTS)
+
+
+def _uniform(p: Parameter, rng: np.random.Generator, n: int) -> NDArray:
+    low, high = map(p.inward, p.bounds)
+    return np.array([p.outward(x) for x in rng.uniform(low, high, n)])
+
+
+def _inner(t: Told, values: NDArray) -> NDArray:
+    return np.log(values) if t.logarithmic else values
+
+
+def _told(p: Parameter, draws: NDArray) -> Told:
+    intervals = {
+        level: tuple(map(float, np.quantile(draws, [0.5 * (1 - level), 0.5 * (1 + level)]))) for level in LEVELS
+    }
+    low, high = map(p.inward, p.bounds)
+    inner = [p.inward(v) for v in intervals[LEVELS[0]]]
+    place = (np.array([p.inward(v) for v in draws]) - low) / (high - low)
+    ends = {"low": np.mean(place < EDGE), "high": np.mean(place > 1 - EDGE)}
+    worst = max(ends, key=ends.__getitem__)
+    return Told(
+        p.name, p.bounds, p.scale == "log", float(np.median(draws)), intervals,
+        float((inner[1] - inner[0]) / (LEVELS[0] * (high - low))),
+        worst if ends[worst] > PRESSED * EDGE else None,
+    )  # fmt: skip
+
+
+def _discrepancy(e: Emulated, unknowns: NDArray) -> Discrepancy:
+    d = e.registration.d
+    at = [0.5, 0.16, 0.84]
+    sigma, tau = np.quantile(unknowns[:, 1] / d, at), np.quantile(1e3 * unknowns[:, 2], at)
+    return Discrepancy(e.name, tuple(map(float, sigma)), tuple(map(float, tau)), e.frames.reading / d)
+
+
+def _doubts(group: Runs, told: Sequence[Told], discrepancies: Sequence[Discrepancy]) -> list[Doubt]:
+    doubts = []
+    for t in told:
+        if t.pressed:
+            end, value = ("lower", t.prior[0]) if t.pressed == "low" else ("upper", t.prior[1])
+            rule = (
+                f"{t.name}: the best values lie at the {end} end of what was run or allowed, {value:g}, or "
+                "beyond: intervals end there for want of runs; widen the design"
+            )
+            doubts.append(Doubt("edge", rule, group.file))
+    for x in discrepancies:
+        if x.sigma_d[0] > _LARGE * x.reading_d:
+            rule = (
+                f"no parameters make the solver meet the record: it stays {x.sigma_d[0]:.2g} d (68 %: "
+                f"{x.sigma_d[1]:.2g} to {x.sigma_d[2]:.2g}) off, where a reading has {x.reading_d:.2g} d; the "
+                "intervals have that in them"
+            )
+            doubts.append(Doubt("discrepancy", rule, x.record))
+    return doubts
