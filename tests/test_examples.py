@@ -148,10 +148,18 @@ def score_a_trajectory(found):
     assert apart / 3 < simulated["rms, d"] < 3 * apart  # an rms over flights that differ by so much at their tops
 
 
+def calibrate_another_solver(found):
+    """The record was made with known numbers; the height and the time of a flight tell both of them."""
+    for low, high, true in found.values():
+        assert low < true < high
+    assert found["e"][1] - found["e"][0] < 0.02
+
+
 CHECKS = {
     "01": impacts_of_a_track, "02": fit_a_law_to_impacts, "03": fit_a_law_to_a_track, "04": predict_another_pair,
     "05": a_law_of_your_own, "06": bounce_of_a_point_particle, "07": bounce_with_the_flow_resolved,
     "08": drag_of_a_held_sphere, "09": settling_sphere, "10": score_a_trajectory,
+    "11": calibrate_another_solver,
 }  # fmt: skip
 
 
