@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -73,7 +74,32 @@ _WORDS = {
     **dict.fromkeys(("millimeter", "millimetre", "millimeters", "millimetres"), Quantity(1e-3, LENGTH)),
     **dict.fromkeys(("centimeter", "centimetre", "centimeters", "centimetres"), Quantity(1e-2, LENGTH)),
     **dict.fromkeys(("microns", "micrometer", "micrometre"), Quantity(1e-6, LENGTH)),
+    **dict.fromkeys(("сек", "δευτ", "δευτερόλεπτα", "秒", "초"), _WITH_PREFIX["s"]),
+    **dict.fromkeys(("мин", "分钟", "분"), Quantity(60.0, TIME)),
+    **dict.fromkeys(("毫秒", "ミリ秒", "밀리초"), Quantity(1e-3, TIME)),
+    **dict.fromkeys(("微秒", "マイクロ秒"), Quantity(1e-6, TIME)),
+    **dict.fromkeys(("米", "公尺", "メートル", "μέτρα"), _WITH_PREFIX["m"]),
+    **dict.fromkeys(("厘米", "公分", "センチ", "εκατοστά"), Quantity(1e-2, LENGTH)),
+    **dict.fromkeys(("毫米", "公厘", "ミリ", "ミリメートル", "밀리미터", "χιλιοστά"), Quantity(1e-3, LENGTH)),
+    **dict.fromkeys(("微米", "ミクロン"), Quantity(1e-6, LENGTH)),
 }
+"""Names that take no prefix; of other languages those that mean nothing else."""
+_CYRILLIC = str.maketrans(
+    dict(zip("мгсНлПкдн", "mgsNlPkdn", strict=True)) | {"М": "M", "а": "a", "ц": "z", "т": "t", "С": "S"}
+)
+"""Letters of the units in Cyrillic, one for one, as in кг, мПа, сСт; but for the prefix мк and the с of см and сП."""
+NAMES_BEYOND_ASCII = (*(name for name in _WORDS if not name.isascii()), *"м с мм см мс мкм мкс μm μs µm µs".split())
+"""Some by which the code page of a text is told."""
+
+
+def _latin(name: str) -> str:
+    """A unit in Cyrillic letters as SI writes it; names in others stay as they are."""
+    if name.startswith("Гц") or name[1:] == "Гц":
+        return name.replace("Гц", "Hz").translate(_CYRILLIC)
+    if len(name) > 1 and name[0] == "с" and name[1:] in ("м", "П", "Ст"):
+        return "c" + name[1:].translate(_CYRILLIC)
+    return name.replace("мк", "u", 1).translate(_CYRILLIC) if name.startswith("мк") else name.translate(_CYRILLIC)
+
 
 # Python's float() would also take 1_000 and digits of other scripts.
 NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf|infinity)", re.IGNORECASE | re.ASCII)
@@ -100,6 +126,8 @@ def number(text: str) -> float:
 def quantity(text: str, symbols: Mapping[str, Quantity] | None = None) -> Quantity:
     """A text such as "7.8 g/cm3" in SI; raises :class:`UnitError` where it is none."""
     text = text.strip().translate(_SUPERSCRIPTS)
+    if not text.isascii():  # ㎜ and letters of full width; digits of other scripts stay what they are
+        text = "".join(sign if sign.isdigit() else unicodedata.normalize("NFKC", sign) for sign in text)
     if len(text) > _LONGEST:
         raise UnitError("is too long for a number with a unit")
     try:
@@ -195,6 +223,7 @@ class _Parser:
         return base
 
     def _unit(self, name: str) -> Quantity:
+        given, name = name, name if name in self.symbols or name in _WORDS else _latin(name)
         for known in (self.symbols, _WORDS, _WITH_PREFIX):
             if name in known:
                 return known[name]
@@ -202,7 +231,7 @@ class _Parser:
         if prefix in _PREFIXES and rest in _WITH_PREFIX:
             unit = _WITH_PREFIX[rest]
             return Quantity(_PREFIXES[prefix] * unit.value, unit.dimension)
-        raise UnitError(f"{name!r} is no unit known here, such as mm, ms, Pa s, mPa s, cSt, g/cm3")
+        raise UnitError(f"{given!r} is no unit known here, such as mm, ms, Pa s, mPa s, cSt, g/cm3")
 
 
 def _times(dimension: Dimension, power: Fraction) -> Dimension:

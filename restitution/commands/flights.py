@@ -50,6 +50,8 @@ def read(args: argparse.Namespace) -> Flights | None:
     if args.sigma is not None and not 0 < args.sigma < math.inf:
         raise InputError(Defect("must be positive and finite", field="--sigma", value=f"{args.sigma:g}"))
     conditions = read_conditions(args.conditions) if args.conditions else None
+    if table.sections:
+        table = table.of_particle(None if settings.particle is None else str(settings.particle))
     return read_flights(table, names, settings, conditions, args.sigma)
 
 

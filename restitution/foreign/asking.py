@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 from restitution.errors import Defect
+from restitution.foreign.heading import FRAMES
 from restitution.foreign.programs import POSITIONS, TIMES
 from restitution.foreign.settings import Settings
 from restitution.foreign.table import ForeignTable
+from restitution.units import SPEED, UnitError, quantity
 
 _MOST_NAMED = 30
 """Columns that a message names."""
-_FRAMES = ("frame", "slice", "image", "bild")
+_FRAMES = ("slice", "image", "bild", *(name for name, unit in FRAMES.items() if unit == "frame" and name != "fr"))
 
 
 def what_is_needed(table: ForeignTable) -> Defect:
     """That the columns of a track are not known, with the options that name them, guessed from their names."""
     time, value = _guessed(table)
-    header = ", ".join(table.header[:_MOST_NAMED]) + (" ..." if len(table.header) > _MOST_NAMED else "")
+    header = ", ".join(map(_listed, table.header[:_MOST_NAMED])) + (" ..." if len(table.header) > _MOST_NAMED else "")
     if table.named:
         columns = f"the header ({header}) does not tell which columns are time and position"
     else:
         columns = f"names no columns; they are {header}"
+    if value is not None and _is_speed(table.units.get(value)):
+        # An own name each: only a position has a point and may be in pixels.
+        also = [] if time is None or table.units.get(time) else ["--time-unit s or what it is in"]
+        rest = f", with {also[0]}" if also else ""
+        example = f"--column time_s={_quoted(time or 'NAME')} --column velocity_m_s={_quoted(value)}"
+        return Defect(f"{columns}: {example} (or gap_m=NAME){rest}", file=table.file)
     example = f"--column time_s={_quoted(time or 'NAME')} --column gap_m={_quoted(value or 'NAME')}"
     also = []
     if not table.units.get(time or ""):
@@ -45,10 +53,21 @@ def _guessed(table: ForeignTable) -> tuple[str | None, str | None]:
     return time, value
 
 
+def _is_speed(unit: str | None) -> bool:
+    try:
+        return unit is not None and quantity(unit).dimension == SPEED
+    except UnitError:
+        return False
+
+
 def _moves(table: ForeignTable, name: str) -> bool:
     """Whether a column has more than one value."""
     k = table.header.index(name)
     return len({cells[k] for _, cells in table.rows if len(cells) == len(table.header)}) > 1
+
+
+def _listed(name: str) -> str:
+    return f"'{name}'" if "," in name else name
 
 
 def _quoted(name: str) -> str:

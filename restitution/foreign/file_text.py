@@ -6,10 +6,14 @@ import codecs
 import contextlib
 import itertools
 import re
+import unicodedata
+from functools import cache
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
+from restitution.foreign.programs import POSITIONS, TIMES
 from restitution.inputs import read_bytes
+from restitution.units import NAMES_BEYOND_ASCII
 
 _BINARY = {
     b"PK\x03\x04": "is a spreadsheet or an archive, no text; save the table as CSV",
@@ -80,8 +84,14 @@ def _unmarked_utf16(data: bytes) -> str | None:
 
 
 def _code_page(data: bytes) -> str:
-    """The code page of a text that is no UTF-8: that of western Europe, unless whole words are beyond ASCII."""
+    """The code page of a text that is no UTF-8: the one in which most names of times, positions and units are found;
+    where none is, that of western Europe, unless whole words are beyond ASCII.
+    """
     beyond = b"\n".join(line for line in data.splitlines() if _BEYOND.search(line))[:_SAMPLE]
+    pages = (WESTERN, *_OTHER_SCRIPTS)
+    known = [_known_words(beyond.decode(page, errors="replace")) for page in pages]
+    if known.count(max(known)) == 1:
+        return pages[known.index(max(known))]
     in_words = sum(map(len, _WORDS.findall(beyond)))
     if 2 * in_words < len(_BEYOND.findall(beyond)):
         return WESTERN
@@ -89,6 +99,18 @@ def _code_page(data: bytes) -> str:
 
     best = from_bytes(beyond, cp_isolation=_OTHER_SCRIPTS).best()
     return WESTERN if best is None else best.encoding
+
+
+def _known_words(text: str) -> int:
+    """How many characters beyond ASCII are in words that name times, positions or units."""
+    words = re.findall(r"[^\W\d_]+", unicodedata.normalize("NFKC", text).lower())
+    return sum(len(word) for word in words if not word.isascii() and word in _words())
+
+
+@cache
+def _words() -> frozenset[str]:
+    names = " ".join((*TIMES, *POSITIONS)).lower().split()
+    return frozenset(name for name in (*names, *NAMES_BEYOND_ASCII) if not name.isascii())
 
 
 def mistaken(name: str) -> list[str]:

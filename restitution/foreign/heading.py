@@ -8,9 +8,11 @@ is read as such. Names above the names, each over several columns, are those of 
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass, field
 
 from restitution.errors import Defect, InputError
+from restitution.foreign.file_text import mistaken
 from restitution.foreign.layout import SEPARATORS, Layout, Row, split
 from restitution.foreign.number_text import is_lost, is_number
 from restitution.foreign.programs import program_of
@@ -18,15 +20,19 @@ from restitution.units import UnitError, quantity
 
 _NUMERIC = 0.5
 """Part of the filled cells of a column of numbers that are numbers; the others are defects, named one by one."""
-_FRAMES = {
+FRAMES = {
     "frame": "frame", "frames": "frame", "fr": "frame", "pixel": "px", "pixels": "px", "px": "px",
     "sec": "s", "msec": "ms", "micron": "um", "microns": "um",
+    "кадр": "frame", "кадры": "frame", "帧": "frame", "幀": "frame", "フレーム": "frame", "コマ": "frame", "프레임": "frame",
+    "καρέ": "frame", "пиксель": "px", "пиксели": "px", "пикс": "px", "像素": "px", "画素": "px", "ピクセル": "px",
+    "픽셀": "px",
 }  # fmt: skip
 """Units that are none of SI, or have other names there."""
 _LATTICE = {"d": "d"}
 _SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>s|ms|us|m|mm|cm|um|px)")
 _BRACKETS = re.compile(r"(?P<name>.*?)\s*[(\[](?P<unit>[^()\[\]]+)[)\]]")
 _SLASH = re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>[^/]+)")
+_COMMA = re.compile(r"(?P<name>[^,]+?)\s*[,、]\s*(?P<unit>[^,]+)")
 
 
 @dataclass
@@ -58,9 +64,9 @@ def heading_of(layout: Layout) -> Heading:
         if layout.vectors:
             cells = next(iter(_vector_names(layout.lines[line - 1], layout)), cells)
         placed = _placed(cells, width, filled)
-        if placed is None or not _are_words(placed):
+        if placed is None or not are_words(placed):
             continue
-        if _are_units(placed) and at > 0 and not units:
+        if are_units(placed) and at > 0 and not units:
             units = {i: unit_of(text) for i, text in placed.items() if _is_unit(text)}
             continue
         known = next((j for j in range(at) if program_of(above[j][1]) and _placed(above[j][1], width, filled)), at)
@@ -79,7 +85,7 @@ def heading_of(layout: Layout) -> Heading:
 
 
 def unit_in(name: str) -> str | None:
-    """The unit that the name of a column ends with: "t (s)", "gap [mm]", "y / mm", "y_mm", "gap/d"."""
+    """The unit that the name of a column ends with: "t (s)", "gap [mm]", "y / mm", "y_mm", "gap/d", "h, mm"."""
     return _apart(name)[1]
 
 
@@ -89,15 +95,16 @@ def without_unit(name: str) -> str:
 
 
 def _apart(name: str) -> tuple[str, str | None]:
-    for pattern in (_BRACKETS, _SLASH, _SUFFIX):
-        if (match := pattern.fullmatch(name)) and _is_unit(match["unit"]):
+    plain_name = unicodedata.normalize("NFKC", name)  # brackets of full width
+    for pattern in (_BRACKETS, _SLASH, _COMMA, _SUFFIX):
+        if (match := pattern.fullmatch(plain_name)) and _is_unit(match["unit"]):
             return match["name"], unit_of(match["unit"])
     return name, None
 
 
 def _first_data(layout: Layout) -> int:
     """Which row is the first of data; the number of rows where none is."""
-    numeric = _numeric_columns(layout)
+    numeric = numeric_columns(layout)
     for at, row in enumerate(layout.rows):
         cells = [row.cells[i] for i in numeric if i < len(row.cells)]
         numbers = sum(map(is_number, cells))
@@ -107,7 +114,7 @@ def _first_data(layout: Layout) -> int:
     return len(layout.rows)
 
 
-def _numeric_columns(layout: Layout) -> list[int]:
+def numeric_columns(layout: Layout) -> list[int]:
     """Columns whose cells are mostly numbers in the later half of the body."""
     rows = [row.cells for row in layout.body if len(row.cells) == layout.width]
     rows = rows[len(rows) // 2 :]
@@ -134,12 +141,13 @@ def _placed(cells: list[str], width: int, filled: list[int]) -> dict[int, str] |
     return dict(enumerate(named)) if enough else None
 
 
-def _are_words(placed: dict[int, str]) -> bool:
+def are_words(placed: dict[int, str]) -> bool:
+    """Whether most cells of a line are no numbers."""
     texts = [text for text in placed.values() if text]
     return len(texts) > 0 and sum(map(is_number, texts)) < 0.5 * len(texts)
 
 
-def _are_units(placed: dict[int, str]) -> bool:
+def are_units(placed: dict[int, str]) -> bool:
     """Whether cells are units: each is one, or all are in brackets and some are, as (mm) beside (counts)."""
     filled = [text for text in placed.values() if text]
     bracketed = all(text[0] in "([" and text[-1] in ")]" for text in filled)
@@ -166,15 +174,15 @@ def _from_comments(heading: Heading, layout: Layout, width: int, filled: list[in
 
 def _names_in(text: str, layout: Layout, width: int, filled: list[int]) -> dict[int, str] | None:
     """The names in a comment by column; its sign may be the first of them. None if it has none."""
-    for cells in _cuts(text, layout):
+    for cells in cuts(text, layout):
         for named in (cells, ["#", *cells]):
             placed = _placed(named, width, filled)
-            if placed is not None and _are_words(placed) and all(placed.get(i) for i in filled):
+            if placed is not None and are_words(placed) and all(placed.get(i) for i in filled):
                 return placed
     return None
 
 
-def _cuts(text: str, layout: Layout) -> list[list[str]]:
+def cuts(text: str, layout: Layout) -> list[list[str]]:
     """Ways to cut a comment into names, the separator of the data first; brackets stay with their word."""
     if layout.vectors:
         return _vector_names(text, layout)
@@ -217,20 +225,25 @@ def _with_tracks(names: dict[int, str], above: list[list[str]]) -> dict[int, str
 
 def _is_unit(text: str) -> bool:
     text = unit_of(text)
-    if not text or text.lower() in _FRAMES or text in _FRAMES.values() or text in _LATTICE:
+    if not text or text.lower() in FRAMES or text in FRAMES.values() or text in _LATTICE:
         return True
-    if text[0].isdigit():
-        return False
+    return not text[0].isdigit() and (_is_quantity(text) or text.lower() in ("-", "1", "quality"))
+
+
+def _is_quantity(text: str) -> bool:
     try:
         quantity(text)
     except UnitError:
-        return text.lower() in ("-", "1", "quality")
+        return False
     return True
 
 
 def unit_of(text: str) -> str:
-    bare = text.strip().strip("()[]").strip()
-    return _FRAMES.get(bare.lower(), bare)
+    """A unit without brackets and full stop, by the name that it has here."""
+    bare = unicodedata.normalize("NFKC", text).strip().strip("()[]").strip().removesuffix(".")
+    if not bare.isascii() and not _is_quantity(bare):  # two letters do not tell the code page of a file
+        bare = next((known for known in mistaken(bare) if not known.isascii() and _is_quantity(known)), bare)
+    return FRAMES.get(bare.lower(), bare)
 
 
 def _refuse(layout: Layout, last: tuple[int, list[str]], width: int) -> None:

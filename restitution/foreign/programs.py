@@ -142,12 +142,14 @@ TIMES = (
     "time_s", "time", "t", "t_s", "time (s)", "t/t0", "t_star", "frame", "timestep", "step", "seconds", "slice",
     "slice n°",
     "frame_idx", "frame number", "frame#", "zeit", "temps", "tempo", "tiempo", "czas",
+    "время", "час", "χρόνος", "时间", "時間", "时刻", "時刻", "시간", "кадр", "帧", "フレーム",
 )  # fmt: skip
 """Names by which a column is guessed to be the time, in a message that says how to name it."""
 POSITIONS = (
     "gap_m", "gap", "gap/d", "gap_over_d", "y", "z", "height", "h", "pos_y", "pos_z", "position", "posy", "posz",
     "p_y", "p_z", "zpos", "ypos", "v_zpos", "v_ypos", "cy", "ym", "y position",
     "höhe", "hauteur", "altura", "quota", "altezza", "wysokość", "centreofmass_z", "centreofmass_y",
+    "зазор", "высота", "координата", "положение", "у", "ύψος", "高度", "高さ", "位置", "位移", "変位", "间隙", "높이",
 )  # fmt: skip
 PARTICLES = (
     "particle", "particle_id", "track_id", "track", "trackid", "track id", "trajectory", "object_id", "id",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from itertools import groupby
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from restitution.foreign.heading import Heading, data_rows, heading_of, without_
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain
 from restitution.foreign.programs import Program
+from restitution.foreign.sections import Section, sections
 from restitution.inputs import read_bytes
 from restitution.tables.csv_text import CsvText
 
@@ -36,6 +38,9 @@ class ForeignTable:
     """Whether the file names its columns; else they are called by their number."""
     form: str = ""
     """How it is written, in words, where that is not names and commas."""
+    sections: dict[str, Callable[[], ForeignTable]] = field(default_factory=dict)
+    """The tables that stand one below another in the file, by name; what is above is then the first."""
+    section_rows: dict[str, int] = field(default_factory=dict)
 
     def text(self) -> CsvText:
         """For the strict reader."""
@@ -79,6 +84,8 @@ class ForeignTable:
 
     def particles(self) -> dict[str, int]:
         """Particles or tracks by name, with the number of their rows."""
+        if self.sections:
+            return self.section_rows
         own = self.particle_column
         if own is not None:
             k, count = self.header.index(own), dict[str, int]()
@@ -98,11 +105,13 @@ class ForeignTable:
         if particle not in known:
             names = [f"{name} ({n} rows)" for name, n in list(known.items())[:_MOST_NAMED]]
             more = f" and {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
-            which = "has several particles or tracks" if known else "names no particles"
+            which = "has several particles, tracks or curves" if known else "names no particles"
             rule = f"{which}; --particle takes one of: {', '.join(names)}{more}" if known else which
             raise InputError(
                 Defect(rule, file=self.file, field="--particle" if particle else None, value=particle)
             )
+        if self.sections:
+            return self.sections[particle]()
         own = self.particle_column
         if own is None:
             keep = [i for i, name in enumerate(self.header) if name.rpartition("/")[0] in ("", particle)]
@@ -112,6 +121,13 @@ class ForeignTable:
         k = self.header.index(own)
         rows = [(line, cells) for line, cells in self.rows if _bare(cells[k]) == particle]
         return ForeignTable(self.file, self.header, rows, self.units, self.program, self.named, self.form)
+
+    def whole(self) -> ForeignTable:
+        """All rows of tables one below another under the same names, as of a table of impacts."""
+        tables = [table() for table in self.sections.values()] or [self]
+        if any(table.header != self.header for table in tables):
+            return self.of_particle(None)
+        return replace(self, rows=[row for table in tables for row in table.rows], sections={})
 
 
 def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTable:
@@ -144,7 +160,20 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
     if blocks.is_openfoam_log(lines):
         return _of_blocks(file, *blocks.openfoam_log(lines), programs.OPENFOAM)
     layout = layout_of(lines, file, decimal)
-    heading = heading_of(layout)
+    parts = sections(layout)
+    if len(parts) < 2:
+        return _of_layout(parts[0].layout(layout) if parts else layout)
+    apart = {part.name: partial(_of_section, part, layout) for part in parts}
+    return replace(apart[parts[0].name](), sections=apart, section_rows={part.name: part.rows for part in parts})
+
+
+def _of_section(part: Section, layout: Layout) -> ForeignTable:
+    return _of_layout(part.layout(layout))
+
+
+def _of_layout(layout: Layout) -> ForeignTable:
+    """The table in lines that are cut into rows."""
+    file, heading = layout.file, heading_of(layout)
     program = _program(layout, heading)
     if program is not None:
         heading.names = {i: program.renamed(name) for i, name in heading.names.items()}

@@ -155,6 +155,9 @@ def _in_reach(frames: pd.DataFrame, file: str) -> None:
 def _of_particle(table: ForeignTable, settings: Settings) -> ForeignTable:
     """The rows of the particle; where it is not clear which, raises with all else that is needed too."""
     particle = None if settings.particle is None else str(settings.particle)
+    if particle is None and (position := settings.position or settings.velocity):
+        own = [name for name, apart in table.sections.items() if apart().column(position) is not None]
+        particle = own[0] if len(own) == 1 else None
     try:
         return table.of_particle(particle)
     except InputError as several:

@@ -21,8 +21,10 @@ from pydantic import BaseModel, BeforeValidator, Field, ValidationError
 from restitution.conditions import defects_of
 from restitution.errors import Defect, InputError
 from restitution.foreign.file_text import read_lines
-from restitution.foreign.layout import Layout, layout_of
+from restitution.foreign.heading import data_rows, heading_of
+from restitution.foreign.layout import Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, plain
+from restitution.foreign.sections import sections
 from restitution.inputs import read_json
 from restitution.units import NUMBER, UnitError, number
 
@@ -72,13 +74,18 @@ class _Project(_Part):
     datasets: list[_Dataset] = Field(alias="datasetColl")
 
 
-def is_export(path: str | Path, decimal: Decimal | None = None) -> bool:
-    """Whether a file is an export: JSON, or CSV of two columns without names, or with X and Y under names."""
+def is_export(path: str | Path, decimal: Decimal | None = None, columns_given: bool = False) -> bool:
+    """Whether a file is an export: JSON, or CSV of two columns without names, or with X and Y under names, or of
+    curves below one another, unless the caller says what its columns are.
+    """
     if str(path).endswith(".json"):
         return True
-    rows = layout_of(read_lines(path), str(path), decimal).rows
+    layout = layout_of(read_lines(path), str(path), decimal)
+    rows = layout.rows
     if not rows:
         return False
+    if not columns_given and _curves(layout):
+        return True
     numbers = len(rows[0].cells) == 2 and all(NUMBER.fullmatch(plain(cell, ",")) for cell in rows[0].cells)
     return numbers or (len(rows) > 1 and _is_axes(rows[1].cells))
 
@@ -94,6 +101,13 @@ def bars_left_out(path: str | Path) -> int:
     return sum(bool(p.group) for dataset in project.datasets for p in dataset.data)
 
 
+def _curves(layout: Layout) -> list[tuple[str, Layout]]:
+    """The curves that stand one below another, each under the name of x and its own, as Engauge writes them."""
+    parts = sections(layout) if layout.width == 2 else []
+    values = {part.names[1] if part.names else part.name for part in parts}
+    return [(part.name, part.layout(layout)) for part in parts] if len(values) == len(parts) > 1 else []
+
+
 def _is_axes(cells: list[str]) -> bool:
     return len(cells) >= 2 and [c.upper() for c in cells] == ["X", "Y"] * (len(cells) // 2)
 
@@ -102,16 +116,26 @@ def _read_csv(path: str | Path, axes: tuple[str, str], decimal: Decimal | None) 
     import pandas as pd
 
     layout = layout_of(read_lines(path), str(path), decimal)
+    if curves := _curves(layout):
+        return pd.concat([_points([name], data_rows(of, heading_of(of)), axes, of) for name, of in curves])
     names, rows = [Path(path).stem], layout.rows
     if len(rows) > 1 and _is_axes(rows[1].cells):
         names, rows = _set_names(layout), rows[2:]
+    return _points(names, rows, axes, layout)
+
+
+def _points(names: list[str], rows: list[Row], axes: tuple[str, str], layout: Layout) -> pd.DataFrame:
+    """The points of data sets side by side, an x and a y each."""
+    import pandas as pd
+
+    path = layout.file
     columns: dict[str, list] = {"source": [], axes[0]: [], axes[1]: []}
     lines = []
     for row in rows:
         cells = [plain(cell, layout.decimal) for cell in row.cells]
         if len(cells) % 2 or any(cells[2 * len(names) :]):
             rule = f"has {len(cells)} values where there are {2 * len(names)} columns, an x and a y a data set"
-            raise InputError(Defect(rule, file=str(path), row=row.line))
+            raise InputError(Defect(rule, file=path, row=row.line))
         for k, name in enumerate(names):
             pair = cells[2 * k : 2 * k + 2]
             if not any(pair):
@@ -121,7 +145,7 @@ def _read_csv(path: str | Path, axes: tuple[str, str], decimal: Decimal | None) 
                 try:
                     columns[axis].append(number(cell))
                 except UnitError as error:
-                    place = {"file": str(path), "row": row.line, "field": name}
+                    place = {"file": path, "row": row.line, "field": name}
                     raise InputError(Defect(str(error), **place, value=cell)) from None
             lines.append(row.line)
     return pd.DataFrame(columns, index=pd.Index(lines, name="row"))

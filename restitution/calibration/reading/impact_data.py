@@ -75,12 +75,13 @@ def _read_one(path: str, how: Reading) -> Observations:
             conditions = how.conditions or resource.conditions
             return from_track(datasets.load_track(path), conditions, how, path, digest)
         raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
-    if is_export(path, how.track.decimal):
+    if is_export(path, how.track.decimal, bool(how.columns)):
         return _from_export(path, how, _digest(path))
     foreign = read_foreign(path, how.track.decimal)
     if is_track(foreign, how.settings):
         return from_track_file(foreign, how, _digest(path))
     _known_columns(dict.fromkeys(how.columns, "--column"))
+    foreign = foreign.whole() if how.track.particle is None else foreign.of_particle(str(how.track.particle))
     if not set(foreign.header) & {*read_schema(SCHEMA).columns, *how.columns.values()}:
         rule = f"{what_is_needed(foreign).rule}; of impacts: --column stokes=NAME --column e_eff=NAME"
         raise InputError(Defect(rule, file=path))

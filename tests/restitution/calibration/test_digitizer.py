@@ -81,3 +81,25 @@ def test_rows_that_are_no_pairs_are_refused_by_their_row(tmp_path, content):
     with pytest.raises(InputError) as error:
         exported(tmp_path, "plot.csv", content)
     assert error.value.defects[0].row == 3
+
+
+BELOW = {
+    "simple": "x,steel\n10,0.25\n50,0.6125\n\nx,glass\n200,0.9\n",
+    "gnuplot": "#x\tsteel\n10\t0.25\n50\t0.6125\n\n\n#x\tglass\n200\t0.9\n",
+    "european": "x;steel\n10;0,25\n50;0,6125\n\nx;glass\n200;0,9\n",
+}
+
+
+@pytest.mark.parametrize("kind", BELOW)
+def test_curves_one_below_another_are_sources_of_their_own(tmp_path, kind):
+    impacts = exported(tmp_path, "plot.csv", BELOW[kind])
+    assert list(impacts.labels["source"]) == ["steel", "steel", "glass"]
+    np.testing.assert_allclose(impacts.St, ST)
+    np.testing.assert_allclose(impacts.e, E)
+
+
+def test_tables_of_impacts_joined_with_their_names_are_one(tmp_path):
+    head = "source,impact,stokes,e_eff\n"
+    impacts = exported(tmp_path, "all.csv", head + "a,1,10,0.25\na,2,50,0.6125\n" + head + "b,1,200,0.9\n")
+    assert list(impacts.labels["source"]) == ["a", "a", "b"]
+    np.testing.assert_allclose(impacts.e, E)
