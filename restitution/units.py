@@ -80,7 +80,8 @@ _WORDS = {
     **dict.fromkeys(("微秒", "マイクロ秒"), Quantity(1e-6, TIME)),
     **dict.fromkeys(("米", "公尺", "メートル", "μέτρα"), _WITH_PREFIX["m"]),
     **dict.fromkeys(("厘米", "公分", "センチ", "εκατοστά"), Quantity(1e-2, LENGTH)),
-    **dict.fromkeys(("毫米", "公厘", "ミリ", "ミリメートル", "밀리미터", "χιλιοστά"), Quantity(1e-3, LENGTH)),
+    **dict.fromkeys(("毫米", "公厘", "ミリ", "ミリメートル"), Quantity(1e-3, LENGTH)),
+    **dict.fromkeys(("밀리미터", "χιλιοστά"), Quantity(1e-3, LENGTH)),
     **dict.fromkeys(("微米", "ミクロン"), Quantity(1e-6, LENGTH)),
 }
 """Names that take no prefix; of other languages those that mean nothing else."""
@@ -88,7 +89,8 @@ _CYRILLIC = str.maketrans(
     dict(zip("мгсНлПкдн", "mgsNlPkdn", strict=True)) | {"М": "M", "а": "a", "ц": "z", "т": "t", "С": "S"}
 )
 """Letters of the units in Cyrillic, one for one, as in кг, мПа, сСт; but for the prefix мк and the с of см and сП."""
-NAMES_BEYOND_ASCII = (*(name for name in _WORDS if not name.isascii()), *"м с мм см мс мкм мкс μm μs µm µs".split())
+_SHORT = ("м", "с", "мм", "см", "мс", "мкм", "мкс", "μm", "μs", "µm", "µs")
+NAMES_BEYOND_ASCII = (*(name for name in _WORDS if not name.isascii()), *_SHORT)
 """Some by which the code page of a text is told."""
 
 

@@ -11,13 +11,16 @@ from restitution.units import SPEED, UnitError, quantity
 
 _MOST_NAMED = 30
 """Columns that a message names."""
-_FRAMES = ("slice", "image", "bild", *(name for name, unit in FRAMES.items() if unit == "frame" and name != "fr"))
+_COUNTED = [name for name, unit in FRAMES.items() if unit == "frame" and name != "fr"]
+_FRAMES = ("slice", "image", "bild", *_COUNTED)
 
 
 def what_is_needed(table: ForeignTable) -> Defect:
     """That the columns of a track are not known, with the options that name them, guessed from their names."""
     time, value = _guessed(table)
-    header = ", ".join(map(_listed, table.header[:_MOST_NAMED])) + (" ..." if len(table.header) > _MOST_NAMED else "")
+    header = ", ".join(map(_listed, table.header[:_MOST_NAMED])) + (
+        " ..." if len(table.header) > _MOST_NAMED else ""
+    )
     if table.named:
         columns = f"the header ({header}) does not tell which columns are time and position"
     else:

@@ -84,8 +84,9 @@ def _unmarked_utf16(data: bytes) -> str | None:
 
 
 def _code_page(data: bytes) -> str:
-    """The code page of a text that is no UTF-8: the one in which most names of times, positions and units are found;
-    where none is, that of western Europe, unless whole words are beyond ASCII.
+    """The code page of a text that is no UTF-8: the one in which most names of times, positions, units are found.
+
+    Where none is, that of western Europe, unless whole words are beyond ASCII.
     """
     beyond = b"\n".join(line for line in data.splitlines() if _BEYOND.search(line))[:_SAMPLE]
     pages = (WESTERN, *_OTHER_SCRIPTS)

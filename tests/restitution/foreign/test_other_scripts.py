@@ -33,7 +33,7 @@ def written(path, header, times, lengths, page):
 @pytest.mark.parametrize("kind", HEADERS)
 def test_units_of_the_header_are_taken(tmp_path, kind):
     table = written(tmp_path / "track.csv", *HEADERS[kind])
-    names = [name.split(";") for name in HEADERS[kind][0].splitlines()][0]
+    names = HEADERS[kind][0].splitlines()[0].split(";")
     assert table.header == names
     track = read_track(table, Settings(time=names[0], position=names[1], point="lowest"), None).table
     np.testing.assert_allclose(track[["time_s", "gap_m"]], np.array(FRAMES) * [1, 1e-3])

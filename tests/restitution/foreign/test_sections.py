@@ -1,4 +1,4 @@
-"""Several tables one below another in one file: each is a track of its own, and none is taken for another's rows."""
+"""Several tables one below another in one file: each is a track of its own."""
 
 import numpy as np
 import pytest
