@@ -88,7 +88,7 @@ _WORDS = {
 _CYRILLIC = str.maketrans(
     dict(zip("мгсНлПкдн", "mgsNlPkdn", strict=True)) | {"М": "M", "а": "a", "ц": "z", "т": "t", "С": "S"}
 )
-"""Letters of the units in Cyrillic, one for one, as in кг, мПа, сСт; but for the prefix мк and the с of см and сП."""
+"""Letters of the units in Cyrillic, one for one, as in кг, мПа; but for the prefix мк and the с of см, сП, сСт."""
 _SHORT = ("м", "с", "мм", "см", "мс", "мкм", "мкс", "μm", "μs", "µm", "µs")
 NAMES_BEYOND_ASCII = (*(name for name in _WORDS if not name.isascii()), *_SHORT)
 """Some by which the code page of a text is told."""

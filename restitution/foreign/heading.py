@@ -24,8 +24,8 @@ FRAMES = {
     "frame": "frame", "frames": "frame", "fr": "frame", "pixel": "px", "pixels": "px", "px": "px",
     "sec": "s", "msec": "ms", "micron": "um", "microns": "um",
     "кадр": "frame", "кадры": "frame", "帧": "frame", "幀": "frame", "フレーム": "frame", "コマ": "frame",
-    "프레임": "frame", "καρέ": "frame", "пиксель": "px", "пиксели": "px", "пикс": "px", "像素": "px", "画素": "px", "ピクセル": "px",
-    "픽셀": "px",
+    "프레임": "frame", "καρέ": "frame", "пиксель": "px", "пиксели": "px", "пикс": "px", "像素": "px",
+    "画素": "px", "ピクセル": "px", "픽셀": "px",
 }  # fmt: skip
 """Units that are none of SI, or have other names there."""
 _LATTICE = {"d": "d"}
