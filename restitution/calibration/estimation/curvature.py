@@ -13,8 +13,8 @@ second derivatives of the whole would lose them where parameters are nearly exch
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -23,17 +23,10 @@ from numpy.typing import NDArray
 
 from restitution.calibration.estimation.formula import FormulaModel, symbolic
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER, Likelihood
-from restitution.calibration.estimation.maximum import Function, Maximum
-from restitution.calibration.estimation.parameters import Normal, Parameter, log_prior, prior_precision
+from restitution.calibration.estimation.parameters import Normal, prior_precision
 from restitution.calibration.estimation.rebound_model import LawModel
 
 _LEAST_VARIANCE = 1e-24
-_NEWTON = 30
-"""Steps of Newton's method at most."""
-_SETTLED = 1e-9
-"""Step in standard errors below which a maximum is found."""
-_AT_REST = 1e-6
-"""The same for a maximum that no search has looked for."""
 _STEP = 1e-3
 """Of second differences, in standard errors or of the value itself."""
 
@@ -231,66 +224,6 @@ class Curvature:
                     )
                     second[i, j] = second[j, i] = mixed / (4 * step[i] * step[j])
         return first, second
-
-
-def sharpened(best: Maximum, negative_log: Function, curvature: Curvature | None) -> Maximum:
-    """The maximum by Newton's method from one nearby, with the covariance of the exact curvature.
-
-    Parameters at their bounds stay there, and keep with all others the covariance of the search.
-    """
-    inside = np.array([best.at_bound(j) is None for j in range(len(best.values))], bool)
-    if curvature is None or not inside.any():
-        return best
-
-    def total(values: NDArray) -> float:
-        return negative_log(values) - log_prior(best.parameters, values, every=False)
-
-    values, lowest, condition, C, left = best.values.copy(), total(best.values), None, None, 0.0
-    low, high = np.array([p.bounds for p in best.parameters]).T
-    even = np.array([p.scale == "even" for p in best.parameters], bool)
-    for _ in range(_NEWTON):
-        d = curvature(values)
-        if d is None:
-            return best
-        diagonal = np.diag(d.hessian)[inside]
-        if not (diagonal > 0).all():
-            return best
-        scale = 1 / np.sqrt(diagonal)
-        size, directions = np.linalg.eigh(d.hessian[np.ix_(inside, inside)] * np.outer(scale, scale))
-        if not size[0] > np.finfo(float).eps * size[-1]:
-            return best
-        condition = float(size[-1] / size[0])
-        inverse = (directions / size) @ directions.T
-        C = inverse * np.outer(scale, scale)
-        step = np.zeros(len(values))
-        step[inside] = -scale * (inverse @ (scale * d.gradient[inside]))
-        left = float(np.max(np.abs(step[inside]) / np.sqrt(np.diag(C))))
-        if left < _SETTLED:
-            break
-        for part in (1.0, 0.5, 0.25, 0.125):
-            new = np.clip(np.where(even, np.abs(values + part * step), values + part * step), low, high)
-            if (value := total(new)) <= lowest:
-                values, lowest = new, value
-                break
-        else:
-            break
-    if not inside.all() or C is None:
-        C = best.covariance
-    return replace(best, values=values, negative_log=lowest, covariance=C, condition=condition, unsettled=left)
-
-
-def nearby(
-    near: Maximum, parameters: Sequence[Parameter], negative_log: Function, curvature: Curvature | None
-) -> Maximum | None:
-    """The maximum by Newton's method alone from that of a similar fit, as without one of many impacts.
-
-    Some three evaluations where a search takes a hundred. None where it does not come to rest, or a parameter is
-    at a bound, which it might leave.
-    """
-    start = replace(near, parameters=tuple(parameters), calls=0, intervals={}, open_ends={}, condition=None)
-    best = sharpened(start, negative_log, curvature)
-    free = all(m.at_bound(j) is None for m in (start, best) for j in range(len(best.values)))
-    return best if free and best.condition is not None and best.unsettled < _AT_REST else None
 
 
 def _of_offsets(

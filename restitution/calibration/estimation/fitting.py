@@ -8,13 +8,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.estimation.curvature import Curvature, nearby
+from restitution.calibration.estimation.curvature import Curvature
 from restitution.calibration.estimation.first_guess import Guess, first_guess
-from restitution.calibration.estimation.identifiability import check_bounds, check_flat, of_estimate, of_search
+from restitution.calibration.estimation.identifiability import (
+    check_bounds,
+    check_exact,
+    check_flat,
+    of_estimate,
+    of_search,
+)
 from restitution.calibration.estimation.likelihood import OFFSET, Likelihood
 from restitution.calibration.estimation.maximum import LEVELS, Maximum, Thresholds, maximise
 from restitution.calibration.estimation.plan import Plan
-from restitution.calibration.estimation.profile import NARROW, profiled, settled
+from restitution.calibration.estimation.profile import NARROW, nearby, profiled, settled
 from restitution.calibration.estimation.small_sample import Restriction, threshold
 from restitution.calibration.reading.impact_checks import doubts_about
 from restitution.calibration.reading.observations import Observations
@@ -94,6 +100,7 @@ def estimate(
     start, steps = guess.values, near.sigma if near is not None else None
     if not warm:
         check_flat(likelihood, start)
+        check_exact(likelihood, start)
     restriction = None
     if restricted and any(not p.mean for p in parameters):
         if not warm:

@@ -35,6 +35,13 @@ CONDITION = 1e10
 
 ROUNDING = float(np.sqrt(np.finfo(float).eps))
 """Error of e below which the misfit of the law is rounding."""
+EXACT = 1e-11
+"""Misfit of e below which the least scatter that a likelihood can have, 1e-12, hides it."""
+_GIVE_ERRORS = "fill the column e_eff_sigma, or give one error to all that have none, as in --e-sigma 0.01"
+
+
+class ExactImpactsError(InputError):
+    """Impacts without errors that follow a law to the last digits: no fit and no ranking can come from them."""
 
 
 def check_data(likelihood: Likelihood) -> None:
@@ -63,8 +70,29 @@ def check_data(likelihood: Likelihood) -> None:
         rule = f"{distinct} Stokes numbers cannot determine {free} parameters ({named}): vary St, or fix one"
         raise InputError(Defect(rule, file=file))
     if SCATTER not in [p.name for p in likelihood.parameters] and (measured.e_sigma <= 0).any():
-        rule = "some impacts have no error, and no scatter is estimated: give e_eff_sigma, or let the scatter be"
-        raise InputError(Defect(rule, file=file))
+        n = int((measured.e_sigma <= 0).sum())
+        rule = (
+            f"{n} of {len(measured)} impacts state no error of e_eff, and no scatter is estimated (--no-scatter): "
+            f"{_GIVE_ERRORS}, or leave --no-scatter out"
+        )
+        raise InputError(Defect(rule, file=file, field="e_eff_sigma"))
+
+
+def check_exact(likelihood: Likelihood, values: NDArray) -> None:
+    """Refuse impacts without errors that a law meets to the last digits: ``values`` are those of least squares."""
+    o = likelihood.observations
+    measured = o.take(~o.censored)
+    if SCATTER not in [p.name for p in likelihood.parameters] or np.max(measured.e_sigma) > 0:
+        return
+    misfit = float(np.max(np.abs(o.e - likelihood.moments(values)[0])[~o.censored]))
+    if misfit < EXACT:
+        law = likelihood.model.name if likelihood.model.name.isidentifier() else "the law"
+        rule = (
+            f"the impacts state no error of e_eff and follow {law} to {max(misfit, 1e-16):.0e}, "
+            "as computed ones do and no measured ones, so that nothing tells how sure its parameters are: "
+            f"{_GIVE_ERRORS}"
+        )
+        raise ExactImpactsError(Defect(rule, file=next(iter(o.files), None), field="e_eff_sigma"))
 
 
 def check_bounds(best: Maximum) -> None:

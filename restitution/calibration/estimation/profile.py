@@ -1,8 +1,8 @@
-"""Ends of the profile's intervals by exact derivatives, for parameters that are nearly exchangeable.
+"""By exact derivatives: the maximum from one nearby, and ends of intervals of parameters nearly exchangeable.
 
-The others follow the parameter that is moved by Newton's method on -ln L with its exact gradient and curvature,
-damped (Levenberg, Marquardt) where it does not lead down. The search of :mod:`.maximum` learns the curvature
-as it goes and loses its way in a valley whose walls are a thousand times steeper than its floor.
+For an interval the others follow the parameter that is moved by Newton's method on -ln L with its exact gradient
+and curvature, damped (Levenberg, Marquardt) where it does not lead down. The search of :mod:`.maximum` learns the
+curvature as it goes and loses its way in a valley whose walls are a thousand times steeper than its floor.
 """
 
 from __future__ import annotations
@@ -14,14 +14,24 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from restitution.calibration.estimation.curvature import Curvature, sharpened
+from restitution.calibration.estimation.curvature import Curvature
 from restitution.calibration.estimation.maximum import Function, Maximum
-from restitution.calibration.estimation.parameters import log_prior
+from restitution.calibration.estimation.parameters import Parameter, log_prior
 
 NARROW = 100.0
 """Condition of the scaled curvature from which on intervals are made here."""
-SHORT = 1e-3
+SHORT = 1e-6
 """Step to the maximum, in standard errors, that is still to be made where a search has stopped short of it."""
+_STEPS = 30
+"""Steps of Newton's method at most."""
+_FOUND = 1e-9
+"""Step in standard errors below which a maximum is found."""
+_ROUNDED = 1e-9
+"""Of -ln L, relative: what rounding may make of a step that is one towards the maximum."""
+_AT_REST = 1e-6
+"""The same of a maximum that no search has looked for."""
+_ROUNDS = 20
+"""Of damped and exact steps by turns: a valley that bends takes several."""
 _NEWTON = 200
 _SETTLED = 1e-6
 """Newton's decrement, in units of -ln L, below which the others have followed."""
@@ -51,10 +61,85 @@ def profiled(
 def settled(best: Maximum, negative_log: Function, curvature: Curvature | None) -> Maximum:
     """The maximum of a search that stopped short of it in a narrow valley, by damped steps and then exact ones."""
     best = sharpened(best, negative_log, curvature)
-    if curvature is None or best.unsettled < SHORT:
+    for _ in range(_ROUNDS):
+        if curvature is None or best.unsettled < SHORT:
+            break
+        values = _Profile(best, negative_log, curvature).follow(best.values, None)
+        further = sharpened(replace(best, values=values), negative_log, curvature)
+        gain, best = best.negative_log - further.negative_log, further
+        if not gain > 0:
+            break
+    return best
+
+
+def sharpened(best: Maximum, negative_log: Function, curvature: Curvature | None) -> Maximum:
+    """The maximum by Newton's method from one nearby, with the covariance of the exact curvature.
+
+    Where rounding hides whether a step leads down, the gradient decides, which is exact: across a narrow valley
+    that bends it must be nought to many digits, or it adds to the curvature along the valley.
+    Parameters at their bounds stay there, and keep with all others the covariance of the search.
+    """
+    inside = np.array([best.at_bound(j) is None for j in range(len(best.values))], bool)
+    if curvature is None or not inside.any():
         return best
-    values = _Profile(best, negative_log, curvature).follow(best.values, None)
-    return sharpened(replace(best, values=values), negative_log, curvature)
+
+    def total(values: NDArray) -> float:
+        return negative_log(values) - log_prior(best.parameters, values, every=False)
+
+    values, lowest, condition, C, left = best.values.copy(), total(best.values), None, None, 0.0
+    before, unsure = np.inf, False
+    low, high = np.array([p.bounds for p in best.parameters]).T
+    even = np.array([p.scale == "even" for p in best.parameters], bool)
+    for _ in range(_STEPS):
+        d = curvature(values)
+        if d is None:
+            return best
+        diagonal = np.diag(d.hessian)[inside]
+        if not (diagonal > 0).all():
+            return best
+        scale = 1 / np.sqrt(diagonal)
+        size, directions = np.linalg.eigh(d.hessian[np.ix_(inside, inside)] * np.outer(scale, scale))
+        if not size[0] > np.finfo(float).eps * size[-1]:
+            return best
+        push = float(np.linalg.norm(scale * d.gradient[inside]))
+        if unsure and push > 0.5 * before:
+            break  # rounding hides the gradient too
+        before = push
+        condition = float(size[-1] / size[0])
+        inverse = (directions / size) @ directions.T
+        C = inverse * np.outer(scale, scale)
+        step = np.zeros(len(values))
+        step[inside] = -scale * (inverse @ (scale * d.gradient[inside]))
+        left = float(np.max(np.abs(step[inside]) / np.sqrt(np.diag(C))))
+        if left < _FOUND:
+            break
+        for part in (1.0, 0.5, 0.25, 0.125):
+            new = np.clip(np.where(even, np.abs(values + part * step), values + part * step), low, high)
+            if (value := total(new)) <= lowest:
+                values, lowest, unsure = new, value, False
+                break
+        else:
+            new = np.clip(np.where(even, np.abs(values + step), values + step), low, high)
+            if not (value := total(new)) - lowest <= _ROUNDED * max(1.0, abs(lowest)):
+                break
+            values, lowest, unsure = new, value, True
+    if not inside.all() or C is None:
+        C = best.covariance
+    return replace(best, values=values, negative_log=lowest, covariance=C, condition=condition, unsettled=left)
+
+
+def nearby(
+    near: Maximum, parameters: Sequence[Parameter], negative_log: Function, curvature: Curvature | None
+) -> Maximum | None:
+    """The maximum by Newton's method alone from that of a similar fit, as without one of many impacts.
+
+    Some three evaluations where a search takes a hundred. None where it does not come to rest, or a parameter is
+    at a bound, which it might leave.
+    """
+    start = replace(near, parameters=tuple(parameters), calls=0, intervals={}, open_ends={}, condition=None)
+    best = sharpened(start, negative_log, curvature)
+    free = all(m.at_bound(j) is None for m in (start, best) for j in range(len(best.values)))
+    return best if free and best.condition is not None and best.unsettled < _AT_REST else None
 
 
 class _Profile:

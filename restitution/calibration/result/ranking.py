@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
 from restitution.calibration.estimation.fitting import Fit, estimate
+from restitution.calibration.estimation.identifiability import ExactImpactsError
 from restitution.calibration.estimation.likelihood import Likelihood
 from restitution.calibration.estimation.plan import Plan
 from restitution.calibration.reading.observations import Observations
@@ -168,6 +169,8 @@ def rank(
                 f"its Stokes number is {plan.model.convention}, that of the data {observations.convention}: fluid "
                 "and sphere are needed (their columns, or --conditions FILE)"
             )
+        except ExactImpactsError:
+            raise  # what one law meets exactly, none of the others is the best of
         except InputError as error:
             failed[label] = str(error.defects[0])
     if not scores:

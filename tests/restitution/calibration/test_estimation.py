@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -146,6 +147,26 @@ def test_parameters_that_can_hardly_be_told_apart_have_nists_errors_or_a_doubt()
     half = 0.5 * np.diff(fit.maximum.intervals[0.68][order], axis=1)[:, 0]
     agree = np.all((half > 0.7 * np.array(sigma)) & (half < 1.5 * np.array(sigma)))
     assert agree or {d.name for d in fit.doubts} & {"sigma", "intervals", "curvature"}
+
+
+BENNETT_5 = Path(__file__).parents[3] / "benchmarks" / "nist_strd" / "Bennett5.dat"
+"""NIST StRD Bennett5: its valley is 50 000 times as long as it is wide, and bends."""
+
+
+@pytest.mark.parametrize(
+    "starts", [{"b1": -2000.0, "b2": 50.0, "b3": 0.8}, {"b1": -1500.0, "b2": 45.0, "b3": 0.85}]
+)
+def test_a_narrow_valley_that_bends_is_followed_to_its_lowest_place(starts):
+    """Certified values and standard deviations, from NIST's two starts."""
+    y, St = np.loadtxt(BENNETT_5, skiprows=60).T
+    bounds = {"b1": (-20000.0, -150.0), "b2": (4.5, 500.0), "b3": (0.08, 8.5)}
+    fit = estimate(
+        plan("b1*(b2 + St)**(-1/b3)/100", bounds=bounds, e_dry=1.0, starts=starts), observations(St, y / 100)
+    )
+    order = [[p.name for p in fit.maximum.parameters].index(name) for name in starts]
+    value, sigma = [-2523.5058043, 46.736564644, 0.93218483193], [297.15410404, 1.2448871856, 0.020272299378]
+    assert np.max(np.abs(fit.maximum.values[order] - value) / sigma) < 1e-5
+    np.testing.assert_allclose(fit.maximum.sigma[order], sigma, rtol=0.05)
 
 
 def test_functions_of_a_formula_have_their_slopes():
