@@ -26,6 +26,7 @@ import numpy as np
 
 from restitution.calibration import Fit, Plan, estimate, model_of, predict, result_of
 from restitution.calibration.estimation.maximum import LEVELS
+from restitution.calibration.estimation.plan import TYPICAL_OFFSET
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.result.fit_result import sources
 from restitution.errors import InputError
@@ -51,6 +52,8 @@ class Case:
     fit_scatter: bool = True
     sources: int = 2
     """Where they are offset."""
+    offset_drawn: bool = False
+    """Each set has an ``offset`` of its own, drawn from the half-normal of this width."""
 
 
 CASES = (
@@ -65,7 +68,10 @@ CASES = (
     Case("scatter, five sources offset by 0.03", 0.03, 0.0, 0.0, 0.03, sources=5),
     Case("scatter, two sources offset by 0.01", 0.03, 0.0, 0.0, 0.01),
     Case("scatter, two sources offset by 0.08", 0.03, 0.0, 0.0, 0.08),
+    Case("scatter, two sources offset as known", 0.03, offset=TYPICAL_OFFSET, offset_drawn=True),
 )
+"""The last has offsets from the prior of the fit: an interval of the posterior that is computed rightly then holds
+as often as it says, which no single offset can test."""
 PREDICTED = ("law", "known source", "new source")
 
 
@@ -79,14 +85,15 @@ def draw(case: Case, n: int, seed: int) -> Observations:
     return drawn(case, n, seed)[0]
 
 
-def drawn(case: Case, n: int, seed: int) -> tuple[Observations, float]:
-    """One set of impacts, and the offset of its first source."""
+def drawn(case: Case, n: int, seed: int) -> tuple[Observations, float, float]:
+    """One set of impacts, the offset of its first source, and the standard deviation that it was drawn with."""
     stream = CASES.index(case) if case in CASES else len(CASES)
     rng = np.random.default_rng([stream, n, seed])
     St = np.exp(rng.uniform(np.log(15), np.log(500), n))
     source = np.arange(n) % case.sources if case.offset else np.zeros(n, int)
     e = law(St) + np.hypot(E_SIGMA, case.scatter) * rng.standard_normal(n)
-    offsets = case.offset * rng.standard_normal(case.sources)
+    between = case.offset * abs(rng.standard_normal()) if case.offset_drawn else case.offset
+    offsets = between * rng.standard_normal(case.sources)
     e += offsets[source]
     seen = St * (1 + case.St_error * rng.standard_normal(n))
     none, unknown = e < case.limit, np.full(n, np.nan)
@@ -104,18 +111,21 @@ def drawn(case: Case, n: int, seed: int) -> tuple[Observations, float]:
         speed=Speed.FAR,
         conditions=(None,) * n,
     )
-    return observations, float(offsets[0])
+    return observations, float(offsets[0]), between
 
 
-def predicted(case: Case, fit: Fit, offset: float, seed: int) -> list[list[list[int]]]:
-    """How many predictions hold by what is predicted and level, the first source being off by ``offset``."""
+def predicted(case: Case, fit: Fit, offset: float, between: float, seed: int) -> list[list[list[int]]]:
+    """How many predictions hold by what is predicted and level.
+
+    The first source is off by ``offset``, a new one by an offset of the standard deviation ``between``.
+    """
     rng = np.random.default_rng([CASES.index(case), len(fit.likelihood.observations), seed, 1])
     St = np.exp(rng.uniform(np.log(15), np.log(500), AHEAD))
     scatter = case.scatter * rng.standard_normal((2, AHEAD))
     truths = (
         law(St),
         law(St) + scatter[0] + offset,
-        law(St) + scatter[1] + case.offset * rng.standard_normal(AHEAD),
+        law(St) + scatter[1] + between * rng.standard_normal(AHEAD),
     )
     result = result_of(fit)
     known, new = (predict(result, St, source=source) for source in (sources(result)[0], None))
@@ -132,7 +142,7 @@ def one(task: tuple[Case, int, int]) -> list | None:
     """
     case, n, seed = task
     plan = Plan(model_of("eq4_exponential"), e_dry="free", scatter=case.fit_scatter)
-    observations, offset = drawn(case, n, seed)
+    observations, offset, between = drawn(case, n, seed)
     try:
         fit = estimate(plan, observations, intervals=("K", "e_dry"))
     except InputError as error:
@@ -140,7 +150,7 @@ def one(task: tuple[Case, int, int]) -> list | None:
         return None
     found, truths = fit.maximum, np.array([K, E_DRY])
     held = [(found.intervals[x][:2, 0] <= truths) & (truths <= found.intervals[x][:2, 1]) for x in LEVELS]
-    ahead = predicted(case, fit, offset, seed)
+    ahead = predicted(case, fit, offset, between, seed)
     return [*(h.astype(float).tolist() for h in held), found.values[:2].tolist(), ahead]
 
 

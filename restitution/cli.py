@@ -27,12 +27,13 @@ from restitution.commands import (
     sweep,
     validate,
 )
+from restitution.commands.parser import Parser
 from restitution.errors import Defect, InputError, OutOfRangeWarning, first_of, printable
 
 
 def build_parser() -> argparse.ArgumentParser:
     """The parser of the whole command line."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="restitution",
         description="Reference toolkit for wet rebound: laws, measured data, impacts, calibration, reports.",
     )

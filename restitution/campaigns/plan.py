@@ -18,6 +18,7 @@ from typing import Any
 from restitution import __version__, datasets
 from restitution.campaigns.design import Varied
 from restitution.cases.case import Case
+from restitution.doubts import of_conditions
 from restitution.errors import Defect, InputError
 from restitution.files import write_folder
 from restitution.runs.record import POINT_PARTICLE
@@ -26,6 +27,8 @@ FILE = "plan.jsonl"
 RUNS = "runs"
 """Folder of the runs' folders."""
 _DIGITS = 12
+_NAMED = 3
+"""Doubts about fluids and spheres that are said: a sweep of many may have one of each."""
 _FOR_READERS = {"name", "title", "note", "prediction", "study"}
 
 
@@ -50,6 +53,9 @@ def planned(varied: Iterable[Varied], show: Callable[[str], None] | None = None)
             found[name] = Planned(name, one.model, one.parameters, _plain(one.case, name))
     if show is not None and count > len(found):
         show(f"{count - len(found)} of {count} runs are the same as others: each is made once")
+    if show is not None:
+        for doubt in of_conditions(r.case.conditions for r in found.values() if r.case is not None)[:_NAMED]:
+            show(f"doubt: {doubt}")
     return list(found.values())
 
 

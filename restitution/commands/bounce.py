@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from restitution.commands.console import show
+from restitution.commands.console import doubt_aside, show
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -38,6 +38,7 @@ def run(args: argparse.Namespace) -> int | None:
     from restitution.runs.record import POINT_PARTICLE
 
     case = read_case(args.case)
+    doubt_aside(case.conditions, args.case)
     folder = folder_for(args.out, f"{case.name}_point_particle", POINT_PARTICLE)
     began = time.perf_counter()
     try:

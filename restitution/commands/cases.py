@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.commands.console import show, show_facts, show_rows
+from restitution.commands.console import doubt_aside, show, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.cases.case import Case
@@ -70,6 +70,7 @@ def run_show(args: argparse.Namespace) -> None:
     from restitution.cases.reading import read_case
 
     case = read_case(args.case)
+    doubt_aside(case.conditions, args.case)
     show_facts([*_conditions(case), *_numbers(case), *_lattice(case)])
 
 
@@ -150,7 +151,9 @@ def run_export(args: argparse.Namespace) -> None:
     options.check_output("--out", args.out, [args.case])
     if args.out and Path(args.out).exists() and not args.force:
         raise InputError(Defect("exists; --force replaces it", file=args.out, field="--out"))
-    text = case_file(args.to, read_case(args.case), args.case)
+    case = read_case(args.case)
+    doubt_aside(case.conditions, args.case)
+    text = case_file(args.to, case, args.case)
     if args.out is None:
         sys.stdout.write(text)
     else:

@@ -13,6 +13,8 @@ from restitution.errors import printable
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from restitution.conditions import Conditions
+
 _LONG = 200
 """Rows from which on a table is printed plainly."""
 
@@ -97,6 +99,15 @@ def show_doubts(doubts: Iterable[object]) -> None:
     """Print what is doubtful, one line each, none twice."""
     for doubt in dict.fromkeys(map(str, doubts)):
         show(f"doubt: {doubt}")
+
+
+def doubt_aside(conditions: Conditions | None, where: str | None = None) -> None:
+    """Say on the standard error what is doubtful about fluid and sphere, where the output is for a program."""
+    from restitution.doubts import of_conditions
+
+    for doubt in of_conditions([conditions], where or ""):
+        if sys.stderr is not None:
+            print(f"doubt: {printable(str(doubt))}", file=sys.stderr)  # noqa: T201
 
 
 def cell(value: object) -> str:

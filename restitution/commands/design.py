@@ -7,7 +7,7 @@ import statistics
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.commands.console import show, show_rows
+from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     from restitution.calibration.result.design import Gain
@@ -60,6 +60,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--beyond", action="store_true", help="also St outside the calibrated range")
     parser.add_argument("--rows", type=options.whole, default=12, metavar="N", help="rows to print (12)")
     parser.add_argument("--plot", metavar="FILE", help="also draw the gain against St, as SVG or PNG")
+    options.add_strict(parser)
     parser.set_defaults(run=run)
 
 
@@ -74,6 +75,7 @@ def run(args: argparse.Namespace) -> None:
     """Print the ranked experiments, and draw them where asked."""
     from restitution.calibration.result import design
     from restitution.calibration.result.fit_file import read_fit
+    from restitution.doubts import of_conditions, refuse
     from restitution.errors import Defect, InputError
     from restitution.files import write_whole
 
@@ -90,6 +92,9 @@ def run(args: argparse.Namespace) -> None:
     options.check_output("--plot", args.plot, [args.fit])
     result = read_fit(args.fit)
     experiments = design.candidates(args.pairs or design.PAIRS, tuple(args.height))
+    doubts = of_conditions((x.conditions for x in experiments), args.pairs or "")
+    if args.strict:
+        refuse(doubts)
     first = next((p.name for p in result.parameters if p.mean), None)
     target = design.Target(None if args.at is not None else args.parameter or first, args.at)
     levels = design.levels_of(result, target, options.once("--level", args.level))
@@ -117,6 +122,7 @@ def run(args: argparse.Namespace) -> None:
     _show(rows[: args.rows], args.shots)
     if len(rows) > args.rows:
         show(f"... {len(rows) - args.rows} more: --rows {len(rows)}")
+    show_doubts(doubts)
 
 
 def _typical_e_dry(result: FitResult, levels: dict[str, str]) -> float | None:

@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.commands.console import show, show_rows
+from restitution.commands.console import doubt_aside, show, show_rows
 from restitution.commands.predict import conditions_of, values
 
 if TYPE_CHECKING:
@@ -110,6 +110,7 @@ def run(args: argparse.Namespace) -> None:
     closure = closure_of(args.law, options.once("NAME=NUMBER", args.parameters), options.once("--of", args.of))
     request = Request(args.level or 0, args.speed, args.within or _WITHIN, args.st_range or _STOKES)
     conditions = conditions_of(args)
+    doubt_aside(conditions, args.conditions)
     film = FilmRequest(args.cells, args.speed, args.modulus)
     given = Options(args.derivative, args.bare, conditions, args.e_dry, request, film)
     if args.drop_test:

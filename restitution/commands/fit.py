@@ -60,6 +60,8 @@ def run(args: argparse.Namespace) -> None:
         raise InputError(Defect("names no folder", field="--report"))
     if args.report is not None:
         check_folder(args.report)
+    if args.trajectory and args.e_sigma is not None:
+        raise InputError(Defect("is for tables of impacts: a track tells its own errors", field="--e-sigma"))
     if args.trajectory:
         fit_trajectory.run(args)
         return

@@ -49,6 +49,12 @@ def add_data(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--allow-unphysical", action="store_true", help="take e_eff above 1 or below 0 as measured"
     )
+    parser.add_argument(
+        "--e-sigma",
+        type=options.number,
+        metavar="S",
+        help="standard error of each e_eff of a table that states none (default: as of the others, or by scatter)",
+    )
     parser.add_argument("--x", metavar="COLUMN", default="stokes", help="what x is in a digitised plot (stokes)")
     parser.add_argument("--y", metavar="COLUMN", default="e_eff", help="what y is in a digitised plot (e_eff)")
 
@@ -147,6 +153,7 @@ def reading_of(args: argparse.Namespace) -> Reading:
         edge=None if args.edge is None else film_edge(args.edge, "--edge"),
         columns=options.once("--column", args.column),
         conditions=read_conditions(args.conditions) if args.conditions else None,
+        e_sigma=args.e_sigma,
         unphysical=args.allow_unphysical,
         axes=(args.x, args.y),
         track=options.settings_of(args),

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.commands.console import show, show_facts, show_rows
+from restitution.commands.console import doubt_aside, show, show_facts, show_rows
 
 if TYPE_CHECKING:
     from restitution.laws import Law
@@ -126,6 +126,7 @@ def run_evaluate(args: argparse.Namespace) -> None:
     if args.stokes is None:
         raise InputError(f"say which Stokes number St is: --stokes {law.convention}, the law's own, or another")
     conditions = read_conditions(args.conditions) if args.conditions else None
+    doubt_aside(conditions, args.conditions)
     if args.speed is None and law.speed is not Speed.UNSTATED:
         raise InputError(f"say which impact speed St was made with: --speed {law.speed} is the law's own")
     St = StokesNumber(variables["St"], args.stokes, args.speed or Speed.UNSTATED)

@@ -19,7 +19,7 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
         "--column",
         action="append",
         default=[],
-        type=pair,
+        type=_column,
         metavar="COLUMN=NAME",
         help="the file's own NAME for a column, as in gap_m=y; other columns are then ignored; may be repeated",
     )
@@ -126,9 +126,22 @@ def once(option: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 def pair(text: str) -> tuple[str, str]:
     """``NAME=VALUE`` as an argument type."""
     name, equals, value = text.partition("=")
-    if not (name and equals and value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=VALUE")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text!r} has no = in it: it must be of the form NAME=VALUE")
+    if not name.strip():
+        raise argparse.ArgumentTypeError(f"{text!r} has nothing before the =: whose value is it?")
+    if not value.strip():
+        raise argparse.ArgumentTypeError(f"{text!r} has nothing after the =: {name} is given no value")
     return name, value
+
+
+def _column(text: str) -> tuple[str, str]:
+    """``COLUMN=NAME`` as an argument type."""
+    try:
+        return pair(text)
+    except argparse.ArgumentTypeError as error:
+        rule = f"{error}; give the file's own name of a column, as in gap_m=y"
+        raise argparse.ArgumentTypeError(rule) from None
 
 
 def assignment(text: str) -> tuple[str, float]:

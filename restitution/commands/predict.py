@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from restitution.commands import options
-from restitution.commands.console import show, show_rows
+from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     from restitution.conditions import Conditions
@@ -68,6 +68,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="NAME",
         help="the laboratory or record of the fit that the one impact is of (default: a new one)",
     )
+    options.add_strict(parser)
     parser.set_defaults(run=run)
 
 
@@ -109,6 +110,7 @@ def run(args: argparse.Namespace) -> None:
     from restitution.calibration.result.fit_file import read_fit
     from restitution.calibration.result.fit_summary import speed_in_words
     from restitution.calibration.result.prediction import predict, predict_at, stokes_of
+    from restitution.doubts import of_conditions, of_speed, refuse
     from restitution.errors import InputError
 
     result = read_fit(args.fit)
@@ -124,6 +126,12 @@ def run(args: argparse.Namespace) -> None:
         low, high = result.stokes_range
         speeds = np.array(args.speed) if args.speed else np.geomspace(low, high, 8) / per_speed
         St = speeds * per_speed
+    doubts = [] if conditions is None else of_conditions([conditions], args.conditions or "")
+    if not doubts and speeds is not None:
+        asked = speeds.max() if args.speed else speeds.min()
+        doubts = of_speed(float(asked), conditions, by_stokes=not args.speed)
+    if args.strict:
+        refuse(doubts)
     levels = options.once("--level", args.level)
     edge = result.edge_d if args.edge is None else args.edge
     if edge == result.edge_d:
@@ -156,5 +164,6 @@ def run(args: argparse.Namespace) -> None:
         said += f"; converted to an edge of {edge:g} d, speeds included"
     show(f"{result.law.text}; Stokes number {result.stokes_convention}, speed {said}")
     show_rows(headings if speeds is None else ("speed m/s", *headings), rows)
+    show_doubts(doubts)
     for warning in prediction.warnings:
         print(f"warning: {warning}", file=sys.stderr)  # noqa: T201

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands.cases import run_list
-from restitution.commands.console import show
+from restitution.commands.console import doubt_aside, show
 
 if TYPE_CHECKING:
     from restitution.cases.case import Case
@@ -64,6 +64,7 @@ def run(args: argparse.Namespace) -> int | None:
     if args.template is not None:
         _write_template(find(args.case), Path(args.template))
         return None
+    doubt_aside(case.conditions, args.case)
     folder = folder_for(args.out, case.name, RESOLVED)
 
     def say(text: str) -> None:

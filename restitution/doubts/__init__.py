@@ -6,14 +6,29 @@ result and a :class:`~.doubt.Doubt` that names the likely mistake. Read
 renumbered, smoothed), :mod:`.place` (the coordinate, the wall, holes), :mod:`.stated` (conditions by themselves);
 :mod:`.falls` (what the flights of a track say of gravity), :mod:`.pace` (clock, fluid and sphere by it),
 :mod:`.motion` (a track against its conditions), :mod:`.record` (all of a record);
-:mod:`.film_loss` (impacts against all measured ones).
+:mod:`.copies` (impacts told twice), :mod:`.film_loss` (impacts against all measured ones).
 """
 
+from restitution.doubts.copies import of_copies
 from restitution.doubts.doubt import Doubt, refuse
 from restitution.doubts.film_loss import of_impacts
 from restitution.doubts.mistracked import Cleaned, cleaned
 from restitution.doubts.motion import of_track
+from restitution.doubts.pace import of_speed
 from restitution.doubts.place import holes
 from restitution.doubts.record import of_record
+from restitution.doubts.stated import of_conditions
 
-__all__ = ["Cleaned", "Doubt", "cleaned", "holes", "of_impacts", "of_record", "of_track", "refuse"]
+__all__ = [
+    "Cleaned",
+    "Doubt",
+    "cleaned",
+    "holes",
+    "of_conditions",
+    "of_copies",
+    "of_impacts",
+    "of_record",
+    "of_speed",
+    "of_track",
+    "refuse",
+]

@@ -9,6 +9,7 @@ import numpy as np
 
 from restitution.doubts import falls
 from restitution.doubts.doubt import Doubt
+from restitution.doubts.stated import HEAVIEST, LIGHT
 from restitution.tracks import Contacts, Track
 
 if TYPE_CHECKING:
@@ -26,12 +27,10 @@ _DRAG = 0.1
 """Relative error of a law of drag."""
 SLOW_AT_FIRST, FAST_AT_FIRST = 0.4, 2.5
 """The same of an approach, where added mass, history and drag differ more."""
-_HEAVIEST = 23e3
-"""Density of osmium in kg/m3."""
 BEYOND = 1.3
 """Times the terminal speed above which a sphere does not fall: laws of drag agree to a tenth."""
-_LIGHT = 30.0
-"""Density in kg/m3 below which one of a solid or a liquid is taken to be in g/cm3."""
+DRIVEN = 10.0
+"""Times the terminal speed that a sphere which is driven into a wall, as by a pendulum, and rebounds is not at."""
 _THINNEST = 2e-4
 """Viscosity in Pa s of pentane, below which a liquid is not looked for."""
 
@@ -54,6 +53,26 @@ def of_pace(track: Track, found: Contacts, conditions: Conditions, whole: bool) 
         if coming.error < 0.2 * expected and coming.acceleration < 0.2 * expected:
             return [_lighter(0.0, conditions) if lighter else _too_slow(coming.mean_speed, terminal)]
     return []
+
+
+def of_speed(speed: float, conditions: Conditions, by_stokes: bool = False) -> list[Doubt]:
+    """An impact speed in m/s that is asked for and that no sphere comes to; ``by_stokes``: it follows from St, so
+    that an error of the viscosity is in it too.
+    """
+    terminal, mu = _terminal(conditions), conditions.fluid.viscosity
+    if not speed > DRIVEN * terminal:
+        return []
+    questions = []
+    own = speed * (1e-3 if by_stokes else 1.0)
+    if 1e-3 * mu > _THINNEST and own <= DRIVEN * _terminal(replace_in(conditions, viscosity=1e-3)):
+        questions.append(f'is the viscosity, {mu:g} Pa s, in mPa s (cP)? viscosity = "{mu:g} mPa s"')
+    if not by_stokes and speed <= 1e3 * BEYOND * terminal:
+        questions.append(f'is the speed in mm/s? "{speed:g} mm/s"')
+    message = (
+        f"an impact at {speed:.3g} m/s is {speed / terminal:.2g} times as fast as the sphere falls in this fluid "
+        f"({terminal:.2g} m/s): {' or '.join(questions) or 'are speed, viscosity, diameter and densities right?'}"
+    )
+    return [Doubt("speed", message)]
 
 
 def _share(
@@ -139,7 +158,7 @@ def _density(acceleration: float, conditions: Conditions) -> float:
 
 def _lighter(acceleration: float, conditions: Conditions) -> Doubt:
     own, rho_f, falls_so = conditions.sphere.density, conditions.fluid.density, ""
-    if 0 < acceleration < conditions.gravity and (solid := _density(acceleration, conditions)) < _HEAVIEST:
+    if 0 < acceleration < conditions.gravity and (solid := _density(acceleration, conditions)) < HEAVIEST:
         falls_so = f": it comes to the wall with {acceleration:.3g} m/s2, as one of {solid:.3g} kg/m3 does"
     return Doubt(
         "lighter",
@@ -157,7 +176,7 @@ def _too_fast(fast: float, terminal: float, conditions: Conditions) -> Doubt:
             f'is the viscosity, {fluid.viscosity:g} Pa s, in mPa s (cP)? viscosity = "{fluid.viscosity:g} mPa s"'
         )
         mistakes.append((replace_in(conditions, viscosity=1e-3), words))
-    if fluid.density < _LIGHT and sphere.density < _LIGHT:
+    if fluid.density < LIGHT and sphere.density < LIGHT:
         mistakes.insert(0, (replace_in(conditions, density=1e3), "are the densities in g/cm3 (kg/m3 are meant)?"))
     likely = [question for other, question in mistakes if fast < 1.1 * _terminal(other)]
     thin = _viscosity(fast, conditions)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +20,53 @@ DENSE, THIN = 500.0, 5e-5
 20 C has 7e-5 at 770 kg/m3, pentane 2e-4, water 1e-3. Kinematic viscosities, in m2/s, are mostly below."""
 THINNEST = 2e-6
 """Viscosity in Pa s below that of any fluid that spheres are dropped in: liquid helium has 3e-6, gases 1e-5."""
+LARGEST = 0.2
+"""Diameter in m of a sphere that no vessel of a laboratory is large enough for."""
+LIGHT, HEAVIEST = 30.0, 23e3
+"""Densities in kg/m3: a solid or a liquid below the first is taken to be in g/cm3; the second is osmium's."""
+_GAS = 1e-4
+"""Viscosity in Pa s above which no gas is."""
 _STEPS = ((1000.0, "in mm"), (100.0, "in cm"))
+
+
+def of_conditions(conditions: Iterable[Conditions | None], where: str = "") -> list[Doubt]:
+    """Fluids and spheres by themselves, where no motion is known that they could be held against."""
+    found = [
+        doubt
+        for c in dict.fromkeys(c for c in conditions if c is not None)
+        for doubt in (*of_fluid(c), *of_densities(c), *of_diameter(c))
+    ]
+    return [replace(doubt, where=where) for doubt in dict.fromkeys(found)]
+
+
+def of_diameter(conditions: Conditions) -> list[Doubt]:
+    """A diameter without its unit."""
+    d = conditions.sphere.diameter
+    if d < LARGEST:
+        return []
+    message = (
+        f"the sphere is {d:g} m in diameter, more than a laboratory drops: is it in mm or cm? With its unit: "
+        f'diameter = "{d:g} mm"'
+    )
+    return [Doubt("size", message)]
+
+
+def of_densities(conditions: Conditions) -> list[Doubt]:
+    """Densities in g/cm3, which no solid and no liquid has in kg/m3."""
+    fluid, sphere = conditions.fluid, conditions.sphere
+    liquid = fluid.viscosity > _GAS
+    unlikely = [
+        f"{name}, {density:g} kg/m3"
+        for name, density, wrong in (
+            ("the fluid", fluid.density, fluid.density < LIGHT and liquid),
+            ("the sphere", sphere.density, sphere.density < LIGHT or sphere.density > HEAVIEST),
+        )
+        if wrong
+    ]
+    if not unlikely:
+        return []
+    message = f"no such material has the density of {' and of '.join(unlikely)}: kg/m3 are meant, not g/cm3"
+    return [Doubt("density", message)]
 
 
 def of_fluid(conditions: Conditions) -> list[Doubt]:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from restitution.bounce import Closures, OwnWake, terminal_speed
 from restitution.conditions import Conditions, QuotedImpact
-from restitution.doubts import Doubt
+from restitution.doubts import Doubt, of_conditions
 from restitution.errors import InputError
 from restitution.flights import drag, free
 from restitution.flights.table import Flights, Kind
@@ -127,6 +127,7 @@ def impacts_of(
             "three times of contact in a row" if flights.kind == "times" else "the apexes of two flights in a row"
         )
         raise InputError(f"no impact lies between two known flights: {least} are needed")
+    found.doubts.extend(of_conditions([conditions]))
     return found
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.reading.reading import Reading
-from restitution.doubts import Doubt, of_impacts
+from restitution.doubts import Doubt, of_conditions, of_copies, of_impacts
 from restitution.errors import Defect, InputError
 from restitution.stokes import H_FILM, film_edge
 
@@ -114,6 +114,9 @@ class TableCheck:
 
     def errors(self) -> None:
         """Standard errors are positive."""
+        given = self.how.e_sigma
+        if given is not None and not 0 < given < np.inf:
+            self.defects.append(Defect("must be positive and finite", field="--e-sigma", value=f"{given:g}"))
         for name in _SIGMAS:
             values = self.table[name].to_numpy(float)
             rule = "must be positive; leave the cell empty where it is not known"
@@ -141,16 +144,18 @@ def check_physical(o: Observations, how: Reading) -> Observations:
 
 
 def doubts_about(o: Observations, e_dry: float | None = None) -> tuple[Doubt, ...]:
-    """What is doubtful about impacts: about their records, and whether the film takes what it takes elsewhere.
-
-    ``e_dry`` is taken where the impacts do not state it.
+    """What is doubtful about impacts: about their records and conditions, whether some are copies of others, and
+    whether the film takes what it takes elsewhere. ``e_dry`` is taken where the impacts do not state it.
     """
     try:
         St = o.St * o.ratio_to("st")
     except InputError:  # fluid and sphere are not known: near enough, but for a factor that all conventions state
         St = o.St
     dry = np.where(np.isfinite(o.e_dry), o.e_dry, _TYPICAL_E_DRY if e_dry is None else e_dry)
-    return (*o.doubts, *of_impacts(St, o.e, dry, tuple(o.files)))
+    known, files = {doubt.message for doubt in o.doubts}, tuple(o.files)
+    stated = [d for d in of_conditions(o.conditions, ", ".join(files)) if d.message not in known]
+    copies = of_copies(o.St, o.e, o.e_sigma, o.places, files)
+    return (*o.doubts, *stated, *copies, *of_impacts(St, o.e, dry, files))
 
 
 _TYPICAL_E_DRY = 0.97

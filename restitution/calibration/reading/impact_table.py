@@ -51,6 +51,10 @@ def from_table(
         raise InputError(*sorted(check.defects, key=lambda d: d.row or 0))
     St, St_sigma = _stokes(table, stokes, per_row)
     e_sigma, correlation = _errors(table, e, St, St_sigma)
+    without = np.isnan(e_sigma) & ~none
+    if how.e_sigma is not None:
+        e_sigma = np.where(without, how.e_sigma, e_sigma)
+        selection.append(f"{file}: {without.sum()} impacts state no error of e_eff: {how.e_sigma:g}, as given")
     notes = (
         *selection,
         *_missing_sigmas(e_sigma, none, file),

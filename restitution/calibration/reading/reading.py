@@ -28,6 +28,8 @@ class Reading:
     :data:`~restitution.stokes.H_FILM`."""
     columns: Mapping[str, str] = field(default_factory=dict)
     conditions: Conditions | None = None
+    e_sigma: float | None = None
+    """Standard error of each e_eff that states none; None: that of the others, or as the scatter says."""
     unphysical: bool = False
     """Admit e_eff above 1 or below 0."""
     axes: tuple[str, str] = ("stokes", "e_eff")

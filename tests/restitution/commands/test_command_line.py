@@ -1,5 +1,6 @@
 """The command line as a user meets it: what it prints, and bad input met with one line and status 2."""
 
+import argparse
 import subprocess
 import sys
 import warnings
@@ -9,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from restitution.cli import main
+from restitution.cli import build_parser, main
 
 TRACK = "time_s,gap_m\n" + "".join(f"{0.002 * i:.3f},{abs(0.0045 - 0.001 * i):.5f}\n" for i in range(10))
 
@@ -126,6 +127,64 @@ def test_bad_arguments_are_named(case, arguments, named):
     assert out == ""
     assert error.startswith("error: ")
     assert named in error
+
+
+def parsers(parser=None):
+    """The parser of each command and subcommand."""
+    parser = parser or build_parser()
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for own in action.choices.values():
+                yield from parsers(own)
+
+
+def refusal(capsys, *arguments):
+    """The one line with which a command line is refused."""
+    with pytest.raises(SystemExit) as stopped:
+        main(list(arguments))
+    out, error = capsys.readouterr()
+    assert (stopped.value.code, out, error.count("\n")) == (2, "", 1)
+    return error
+
+
+def test_no_command_takes_an_abbreviated_option(capsys):
+    """Each option of each command, one letter short: no value is taken by it, and the option is asked for."""
+    commands = list(parsers())
+    assert len(commands) > 20
+    for parser in commands:
+        for action in parser._actions:
+            action.required = False
+        options = {o for o in parser._option_string_actions if o.startswith("--")}
+        for option in sorted(options):
+            short = option[:-1]
+            if short in options or len(short) < 3:
+                continue
+            with pytest.raises(SystemExit):
+                parser.parse_args([short])
+            error = capsys.readouterr().err
+            assert error.startswith(f"error: {short} is no option of this command"), parser.prog
+            assert option in error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["design", "fit.json", "--st", "nan"], "--st-sigma"),
+        (["fit", "my.csv", "--column", "frame="], "nothing after the ="),
+        (["fit", "my.csv", "--column", "=y"], "nothing before the ="),
+        (["impacts", "my.csv", "--column", "frame"], "gap_m=y"),
+        (["predict", "fit.json", "--fluid", "density="], "density is given no value"),
+        (["laws", "evaluate", "eq4_exponential", "K="], "K is given no value"),
+        (["fit", "my.csv", "--speed", "fast"], "'contact'"),
+        (["laws", "list", "rebound"], "'rebound'"),
+        (["lawz"], "'laws'"),
+        (["laws", "evaluate"], "NAME"),
+        (["fit", "my.csv", "--\x1bsto"], "x1b"),
+    ],
+)
+def test_what_is_no_command_is_one_line(capsys, arguments, words):
+    assert words in refusal(capsys, *arguments)
 
 
 def test_unwritable_folder_leaves_nothing(case):

@@ -292,11 +292,46 @@ BAD = {
         ["--stokes", "st", "--speed", "far", "--e-dry", "0.97", "--no-scatter"],
         "no error",
     ),
+    "exact impacts without errors": (
+        table(*(f"{s},{0.97 * math.exp(-19.7 / s)!r}" for s in (20, 40, 80, 160, 320)), header="stokes,e_eff\n"),
+        ["--stokes", "st", "--speed", "far", "--e-dry", "0.97"],
+        "--e-sigma",
+    ),
     "unknown grouping": (table(*GOOD), ["--separate", "K=colour"], "colour"),
     "text": (table(*GOOD, "thirty,st,far,0.97,0.3,0.01"), [], "not a number"),
     "no e_eff": (table(*GOOD, "30,st,far,0.97,,"), [], "no_rebound"),
     "empty": ("", [], "empty"),
 }  # fmt: skip
+
+
+def test_an_error_for_all_that_state_none(case):
+    """Exact impacts: K +- its error by sigma_e alone, sum (de/dK)^2 by hand; no law is ranked without an error."""
+    St = (20.0, 40.0, 80.0, 160.0, 320.0)
+    e = [0.97 * math.exp(-10 * 1.97 / s) for s in St]
+    write(case, [f"{s},{x!r},0.97" for s, x in zip(St, e, strict=True)], header="stokes,e_eff,e_dry\n")
+    stated = ["my.csv", "--stokes", "st", "--speed", "far"]
+    assert case("compare", *stated)[0] == 2
+    assert case("fit", *stated, "--e-sigma", "0")[0] == 2
+    assert case("fit", *stated, "--e-sigma", "0.01", "--no-scatter", "--out", "fit.json")[0] == 0
+    (K_found,) = read_fit(case.folder / "fit.json").parameters
+    assert K_found.value == pytest.approx(10)
+    information = sum((1.97 / s * x / 0.01) ** 2 for s, x in zip(St, e, strict=True))
+    assert K_found.sigma == pytest.approx(information**-0.5, rel=1e-3)
+
+
+def test_rows_filled_down_and_numbers_without_units_are_doubted(case):
+    good = rows()
+    write(case, [*good, *[good[3]] * 12])
+    status, out, _ = case("fit", "my.csv", "--out", "fit.json")
+    assert (status, "13 with St" in out) == (0, True)
+    assert "13 with St" in case("compare", "my.csv", "--law", "eq4_exponential")[1]
+    assert "13 with St" in case("data", "validate", "my.csv")[1]
+    assert case("fit", "my.csv", "--strict")[0] == 2
+    pair = ["--fluid", "density=935,viscosity=0.01", "--sphere"]
+    status, out, _ = case("predict", "fit.json", *pair, "diameter=3,density=7800,e_dry=0.97")
+    assert (status, "doubt: the sphere is 3 m" in out) == (0, True)
+    assert "doubt" not in case("predict", "fit.json", *pair, "diameter=3 mm,density=7800,e_dry=0.97")[1]
+    assert case("predict", "fit.json", *pair, "diameter=3,density=7800,e_dry=0.97", "--strict")[0] == 2
 
 
 @pytest.mark.parametrize("kind", BAD)

@@ -2,17 +2,21 @@
 
 import pytest
 
+from restitution import datasets
+from restitution.calibration.result.design import candidates
+from restitution.cases.reading import names, read_case
 from restitution.conditions import Conditions
-from restitution.doubts.stated import of_fluid, of_size
+from restitution.doubts.pace import of_speed
+from restitution.doubts.stated import of_conditions, of_fluid, of_size
 from tests.flights import STEEL_IN_OIL, as_track
 from tests.restitution.doubts.test_clock import filmed
 
 
-def conditions(density, viscosity, diameter=3e-3):
+def conditions(density, viscosity, diameter=3e-3, solid=7800.0):
     return Conditions.model_validate(
         {
             "fluid": {"density": density, "viscosity": viscosity},
-            "sphere": {"diameter": diameter, "density": 7800.0},
+            "sphere": {"diameter": diameter, "density": solid},
         }
     )
 
@@ -44,3 +48,36 @@ def test_a_diameter_in_millimetres_is_named():
     (doubt,) = of_size(track, 0.0, conditions(935.0, 0.01, 3.0))
     assert '"3 mm"' in doubt.message
     assert of_size(track, 0.0, STEEL_IN_OIL) == []
+
+
+@pytest.mark.parametrize(
+    ("stated", "named", "hint"),
+    [
+        (conditions(935.0, 0.01, 3.0), "size", '"3 mm"'),
+        (conditions(935.0, 0.01, 0.5), "size", '"0.5 mm"'),
+        (conditions(0.935, 0.01), "density", "g/cm3"),
+        (conditions(935.0, 0.01, solid=7.8), "density", "g/cm3"),
+        (conditions(935.0, 0.01, solid=7.8e6), "density", "kg/m3"),
+        (conditions(998.0, 1e-6), "viscosity", "cSt"),
+    ],
+)
+def test_numbers_without_their_unit_are_named_where_no_motion_is_known(stated, named, hint):
+    (doubt,) = of_conditions([stated, stated], "my.toml")
+    assert (doubt.name, doubt.where) == (named, "my.toml")
+    assert hint in doubt.message
+
+
+def test_shipped_records_cases_and_pairs_are_not_doubted():
+    known = [datasets.resource(name).conditions for name in datasets.names()]
+    known += [read_case(name).conditions for name in names()] + [c.conditions for c in candidates()]
+    assert of_conditions(known) == []
+
+
+def test_a_speed_that_nothing_falls_with_is_doubted():
+    """Terminal speed of the steel sphere in oil of 10 mPa s: 0.58 m/s (Schiller & Naumann: 0.60)."""
+    oil, typed = conditions(935.0, 0.01), conditions(935.0, 10.0)
+    assert of_speed(0.6, oil) == of_speed(2.0, oil) == []  # a pendulum may be faster than a fall
+    (doubt,) = of_speed(600.0, oil)
+    assert '"600 mm/s"' in doubt.message
+    (doubt,) = of_speed(150.0, typed, by_stokes=True)
+    assert '"10 mPa s"' in doubt.message
