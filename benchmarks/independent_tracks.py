@@ -1,6 +1,6 @@
 """Tracks made by another integrator under other forces: does a fit contain the truth, or say a doubt?
 
-    python -m benchmarks.independent_tracks [--tracks 20] [--seed 0]
+    python -m benchmarks.independent_tracks [--tracks 20] [--seed 0] [--own]
 
 Each track has its own fluid, sphere, camera and release. The sphere falls from rest from a height that the fit is
 not told, under Cheng's (2009) drag, Bevan & Prieve's (2000) resistance of the wall, Lamb's added mass near it and
@@ -10,7 +10,9 @@ somewhere in the fall, is in error by 10 to 30 um a frame, the scale by 1 %, the
 anything.
 
 ``fit --trajectory`` then has its defaults. A track counts as held where the 95 % intervals of all its bounces
-together (Bonferroni's) contain the truth, else as doubted where the fit doubts, as refused where it is.
+together (Bonferroni's) contain the truth, else as doubted where the fit doubts, as refused where it is. ``--own``
+takes tracks of the model itself, drag and history as far from it as they are known, with correlated noise in every
+other one: what is doubted there is doubted wrongly.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ from scipy.stats import norm
 from restitution.calibration.trajectories.doubts import of_records
 from restitution.calibration.trajectories.fit import Measured
 from restitution.calibration.trajectories.recordings import recording
+from restitution.calibration.trajectories.synthetic import CONDITIONS, GAP, Filming, draw
 from restitution.conditions import Conditions, Fluid, Sphere
 from restitution.errors import InputError
 from restitution.tracks import Track, noise
@@ -68,6 +71,12 @@ def make(rng: np.random.Generator, lamb: float = 1.0) -> Made:
     seen += sigma * rng.standard_normal(len(frames))
     frames = frames + rng.uniform(-1, 1)
     return Made(Track(frames, seen, "gap", noise(frames, seen)), c, tuple(map(float, e)), height)
+
+
+def make_own(rng: np.random.Generator) -> Made:
+    """One track of the model that fits it."""
+    track, truth = draw(Filming(sigma_u_d=0.01 * int(rng.integers(2)), forces=True), rng)
+    return Made(track, CONDITIONS, tuple(truth.e.tolist()), GAP)
 
 
 def fly(
@@ -138,13 +147,16 @@ def main() -> None:
     parser.add_argument("--tracks", type=int, default=20)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--free-mass", action="store_true", help="an added mass of 1/2 at any gap")
+    parser.add_argument("--own", action="store_true", help="tracks of the model itself")
     args = parser.parse_args()
     table = Table("track", "verdict", "pulls of e", "doubts", "d mm", "height d", "frames")
-    verdicts = []
+    verdicts, doubts = [], 0
     for k in range(args.tracks):
-        made = make(np.random.default_rng([args.seed, k]), 0.0 if args.free_mass else 1.0)
+        rng = np.random.default_rng([args.seed, k])
+        made = make_own(rng) if args.own else make(rng, 0.0 if args.free_mass else 1.0)
         found = judge(made)
         verdicts.append(found.verdict)
+        doubts += bool(found.why) and found.verdict != "refused"
         d = made.conditions.sphere.diameter
         table.add_row(
             str(k), found.verdict, " ".join(f"{p:+.1f}" for p in found.pulls), found.why, f"{1e3 * d:.1f}",
@@ -152,7 +164,8 @@ def main() -> None:
         )  # fmt: skip
     console = Console(width=150)
     console.print(table)
-    console.print(", ".join(f"{v}: {verdicts.count(v)}" for v in dict.fromkeys(verdicts)))
+    told = ", ".join(f"{v}: {verdicts.count(v)}" for v in dict.fromkeys(verdicts))
+    console.print(f"{told}; with a doubt: {doubts}")
 
 
 if __name__ == "__main__":
