@@ -55,12 +55,23 @@ class Tracked:
 
     def impacts(self, args: argparse.Namespace) -> Impacts:
         """The impacts by the options; the conditions must be known."""
+        from dataclasses import replace
+
+        from restitution.doubts import of_gain, of_impacts
         from restitution.impacts import find_impacts
+        from restitution.stokes import convention
 
         name = Path(args.track).stem
-        return find_impacts(
+        found = find_impacts(
             self.track, self.conditions, args.speed, args.stokes, name, self.kind, args.frames, args.film
         )
+        rows = found.table()
+        St = rows.impact_speed_m_s * convention("st").per_speed(self.conditions)
+        e_dry = self.conditions.sphere.e_dry
+        doubts = of_gain(list(rows.impact), rows.e_eff, rows.e_eff_sigma, e_dry, name)
+        if self.kind == "measured" and e_dry is not None:
+            doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True)
+        return replace(found, doubts=[*found.doubts, *doubts])
 
 
 def edge(args: argparse.Namespace) -> float:

@@ -11,7 +11,7 @@ renumbered, smoothed), :mod:`.place` (the coordinate, the wall, holes), :mod:`.s
 
 from restitution.doubts.copies import of_copies
 from restitution.doubts.doubt import Doubt, refuse
-from restitution.doubts.film_loss import of_impacts
+from restitution.doubts.film_loss import of_gain, of_impacts
 from restitution.doubts.mistracked import Cleaned, cleaned
 from restitution.doubts.motion import of_track
 from restitution.doubts.pace import of_speed
@@ -26,6 +26,7 @@ __all__ = [
     "holes",
     "of_conditions",
     "of_copies",
+    "of_gain",
     "of_impacts",
     "of_record",
     "of_speed",

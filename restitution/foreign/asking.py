@@ -6,7 +6,7 @@ from restitution.errors import Defect
 from restitution.foreign.heading import FRAMES
 from restitution.foreign.programs import POSITIONS, TIMES
 from restitution.foreign.settings import Settings
-from restitution.foreign.table import ForeignTable
+from restitution.foreign.table import ROW, ForeignTable
 from restitution.units import SPEED, UnitError, quantity
 
 _MOST_NAMED = 30
@@ -33,7 +33,9 @@ def what_is_needed(table: ForeignTable) -> Defect:
         return Defect(f"{columns}: {example} (or gap_m=NAME){rest}", file=table.file)
     example = f"--column time_s={_quoted(time or 'NAME')} --column gap_m={_quoted(value or 'NAME')}"
     also = []
-    if not table.units.get(time or ""):
+    if time is None and table.named and len(table.header) != 2:
+        also.append(f"--column time_s={ROW} --time-unit frame --fps N where each row is a frame")
+    elif not table.units.get(time or ""):
         frames = time is not None and any(word in time.lower() for word in _FRAMES)
         also.append("--time-unit frame --fps N" if frames else "--time-unit s or what it is in")
     if not table.units.get(value or ""):
@@ -47,9 +49,13 @@ def what_is_needed(table: ForeignTable) -> Defect:
 def _guessed(table: ForeignTable) -> tuple[str | None, str | None]:
     """Which columns may be time and position: by their usual names, or the only two that there are."""
     time = next((own for name in TIMES if (own := table.column(name))), None)
+    time = time or next((own for own in table.header if own.lower().startswith(("time ", "time("))), None)
     value = next(
         (own for name in POSITIONS if (own := table.column(name)) and own != time and _moves(table, own)), None
     )
+    if value is None:  # "Position (m) Run #1"
+        starts = tuple(f"{name} " for name in POSITIONS if len(name) > 3)
+        value = next((own for own in table.header if own.lower().startswith(starts) and _moves(table, own)), None)
     if len(table.header) == 2:
         time = time or next(name for name in table.header if name != value)
         value = value or next(name for name in table.header if name != time)
@@ -83,5 +89,5 @@ def overridden(table: ForeignTable, settings: Settings, time: str, value: str) -
     return tuple(
         f"{name} is taken in {given}, as {option} says; the file says {own}"
         for name, option, given in stated
-        if given is not None and (own := table.units.get(name)) is not None and own != given
+        if given is not None and (own := table.units.get(name)) and own != given
     )

@@ -20,6 +20,8 @@ _BINARY = {
     b"\xd0\xcf\x11\xe0": "is an old spreadsheet, no text; save the table as CSV",
     b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.formats.hdf5`
     b"\x1f\x8b": "is compressed; unpack it first",
+    b"\x93NUMPY": "is an array of NumPy, no text; save it with numpy.savetxt",
+    b"MATLAB 5.0": "is a workspace of MATLAB, no text; save the table with writematrix",
 }
 
 
@@ -54,7 +56,8 @@ def read_lines(path: str | Path) -> list[str]:
 def lines_of(text: str, file: str) -> list[str]:
     """The lines of a text; raises :class:`InputError` for markup, which is no table."""
     if kind := _MARKUP.get(text.lstrip()[:1]):
-        raise InputError(Defect(f"is {kind}, no table; export the table as CSV", file=file))
+        digitised = "; of a project of WebPlotDigitizer only fit and compare take impacts" * (kind == "JSON")
+        raise InputError(Defect(f"is {kind}, no table; export the table as CSV{digitised}", file=file))
     return text.split("\n")
 
 

@@ -30,7 +30,7 @@ FRAMES = {
 """Units that are none of SI, or have other names there."""
 _LATTICE = {"d": "d"}
 _SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>s|ms|us|m|mm|cm|um|px)")
-_BRACKETS = re.compile(r"(?P<name>.*?)\s*[(\[](?P<unit>[^()\[\]]+)[)\]]")
+_BRACKETS = re.compile(r"(?P<name>.*?)\s*[(\[](?P<unit>[^()\[\]]+)[)\]](?P<run>[^()\[\]]*)")
 _SLASH = re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>[^/]+)")
 _COMMA = re.compile(r"(?P<name>[^,]+?)\s*[,、]\s*(?P<unit>[^,]+)")
 
@@ -98,7 +98,7 @@ def _apart(name: str) -> tuple[str, str | None]:
     plain_name = unicodedata.normalize("NFKC", name)  # brackets of full width
     for pattern in (_BRACKETS, _SLASH, _COMMA, _SUFFIX):
         if (match := pattern.fullmatch(plain_name)) and _is_unit(match["unit"]):
-            return match["name"], unit_of(match["unit"])
+            return match["name"] + match.groupdict().get("run", ""), unit_of(match["unit"])
     return name, None
 
 
@@ -167,9 +167,18 @@ def _from_comments(heading: Heading, layout: Layout, width: int, filled: list[in
         if not units and all(_is_unit(name) for name in placed.values()):
             units = {i: unit_of(name) for i, name in placed.items()}
             continue
-        heading.names, heading.line, heading.commented = placed, line, True
+        above = [
+            cells for n, title in reversed(layout.comments) if n < line for cells in _wide(title, layout, width)
+        ]
+        heading.names, heading.line, heading.commented = _with_tracks(placed, above[::-1]), line, True
         return units
     return {}
+
+
+def _wide(text: str, layout: Layout, width: int) -> list[list[str]]:
+    """A comment cut as the columns are, where it has a cell for each."""
+    cells = split(text, layout.separator)
+    return [cells] if len(cells) == width else []
 
 
 def _names_in(text: str, layout: Layout, width: int, filled: list[int]) -> dict[int, str] | None:

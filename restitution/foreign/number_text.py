@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from datetime import date
 from typing import Literal
 
 from restitution.units import NUMBER
@@ -18,13 +19,35 @@ _THOUSANDS = re.compile(
     r"[+-]?\d{1,3}((,\d{3})+\.\d*|(\.\d{3})+,\d*|(,\d{3}){2,}|(\.\d{3}){2,}|([ '’]\d{3})+([.,]\d*)?)", re.ASCII
 )
 _AS_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+_CLOCK = re.compile(
+    r"((?P<date>\d{4}-\d\d-\d\d)[T ])?(?P<h>\d{1,3}):(?P<min>[0-5]\d):(?P<s>[0-5]\d)([.,](?P<part>\d+))?Z?",
+    re.ASCII,
+)
 _LOST = {"", "na", "n/a", "#n/a", "null", "none", "-", "--", "nan", "+nan", "-nan", "nan(ind)", "-nan(ind)"}
+
+
+def seconds(cell: str) -> str | None:
+    """The seconds of a time of day, 10:15:03.250, or of a date and a time; else None.
+
+    Days are counted from the last thousandth, so that microseconds remain.
+    """
+    match = _CLOCK.fullmatch(cell.strip())
+    if match is None:
+        return None
+    try:
+        day = date.fromisoformat(match["date"]).toordinal() % 1000 if match["date"] else 0
+    except ValueError:
+        return None
+    whole = 86400 * day + 3600 * int(match["h"]) + 60 * int(match["min"]) + int(match["s"])
+    return f"{whole}.{match['part'] or 0}"
 
 
 def plain(cell: str, decimal: Decimal = ".") -> str:
     """The cell as Python writes numbers; as it is where it is no number."""
     if NUMBER.fullmatch(cell):
         return cell  # most are
+    if (time := seconds(cell)) is not None:
+        return time
     text = cell.translate(_TYPOGRAPHIC).strip()
     text = _EXPONENT.sub(r"\1e\2", text) if _EXPONENT.fullmatch(text) else text
     if decimal == "," and _COMMA.fullmatch(text):

@@ -122,11 +122,12 @@ IDTRACKER = Program(
     time="time", position="y", units={"time": "s", "seconds": "s", "x": "px", "y": "px"}, down=True, centre=True,
     joined=(r"^([xy])(\d+)$|^seconds$", lambda m: f"{m[2]}/{m[1]}" if m[2] else "time"),
 )  # fmt: skip
+_DATA_SET = r"(?:data set(?: \d+)?|latest|run \d+|video ?analysis(?: \d+)?)"
 VERNIER = Program(
     "Logger Pro",
-    lambda names: any(re.match(r"(data set|latest|run \d+|video analysis) ?: ?time", name) for name in names),
+    lambda names: any(re.match(rf"{_DATA_SET} ?: ?time", name) for name in names),
     time="time", position="y",
-    joined=(r"^(data set|latest|run \d+|video analysis) ?: ?(.*?) ?(\(.*\))?$", r"\1/\2 \3"),
+    joined=(rf"^({_DATA_SET}) ?: ?(.*?) ?(\(.*\))?$", r"\1/\2 \3"),
 )  # fmt: skip
 VERNIER_TEXT = Program("Logger Pro", lambda names: False, time="t", position="y")
 """Known by the first line of the text, "Vernier Format"."""

@@ -15,12 +15,14 @@ from restitution.foreign.formats import blocks, hdf5, markup, stopwatch
 from restitution.foreign.formats.spots import Spots
 from restitution.foreign.heading import Heading, data_rows, heading_of, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
-from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain
+from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain, seconds
 from restitution.foreign.programs import Program
 from restitution.foreign.sections import Section, sections
 from restitution.inputs import read_bytes
 from restitution.tables.csv_text import CsvText
 
+ROW = "row"
+"""A column that every table has, unless the file has its own: which row of data it is, from 0."""
 _MOST_NAMED = 20
 """Particles that a message names."""
 
@@ -96,6 +98,13 @@ class ForeignTable:
             name.rpartition("/")[0] for name in self.header if name.rpartition("/")[2].lower() in ("x", "y", "z")
         ]
         return {track: len(self.rows) for track in dict.fromkeys(tracks) if track}
+
+    def with_rows(self) -> ForeignTable:
+        """The same with the column of that name."""
+        rows = [(line, [f"{n}", *cells]) for n, (line, cells) in enumerate(self.rows)]
+        return ForeignTable(
+            self.file, [ROW, *self.header], rows, {ROW: "frame", **self.units}, self.program, self.named, self.form
+        )
 
     def of_particle(self, particle: str | None) -> ForeignTable:
         """One of them; raises :class:`InputError` with the list of what there is where it is not clear which."""
@@ -180,12 +189,20 @@ def _of_layout(layout: Layout) -> ForeignTable:
     names = list(heading.names.values())
     rows = _rows(data_rows(layout, heading), list(heading.names), layout, file)
     units = {heading.names[i]: unit for i, unit in heading.units.items() if i in heading.names}
+    clocks = [
+        i for i in heading.names if (first := data_rows(layout, heading)[:1]) and seconds(_cell(first[0], i))
+    ]
+    units |= {heading.names[i]: "s" for i in clocks}
     if stopwatch.is_stopwatch(names):
         names, rows = stopwatch.bounces(names, rows, file)
         return ForeignTable(file, names, rows, {names[1]: "s"}, form="phyphox")
     if program is not None and program.counted and program.time is not None:
         names, rows = [program.time, *names], [(line, [f"{n}", *cells]) for n, (line, cells) in enumerate(rows)]
     return ForeignTable(file, names, rows, units, program, heading.line is not None, _form(layout, heading))
+
+
+def _cell(row: Row, column: int) -> str:
+    return row.cells[column] if column < len(row.cells) else ""
 
 
 def _program(layout: Layout, heading: Heading) -> Program | None:

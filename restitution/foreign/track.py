@@ -12,7 +12,7 @@ from restitution.conditions import LARGEST, SMALLEST, Conditions
 from restitution.errors import Defect, InputError
 from restitution.foreign.asking import overridden, what_is_needed
 from restitution.foreign.settings import Settings, Units
-from restitution.foreign.table import ForeignTable, in_words, lost_rows
+from restitution.foreign.table import ROW, ForeignTable, in_words, lost_rows
 from restitution.tables.reading import read_table
 from restitution.tracks import Track, contacts
 
@@ -23,6 +23,8 @@ Quantity = Literal["gap", "velocity"]
 COLUMNS: dict[Quantity, str] = {"gap": "gap_m", "velocity": "velocity_m_s"}
 """The project's own names of the value of a track."""
 _SCHEMAS: dict[Quantity, str] = {"gap": "trajectory", "velocity": "settling"}
+_SAME_CLOCK = 0.02
+"""Part by which frames a second may differ from the rows a second of a file that has times of its own."""
 SURE = 0.6
 """Likelihood below which a position counts as lost; the default of DeepLabCut."""
 
@@ -56,6 +58,14 @@ def columns_of(table: ForeignTable, settings: Settings) -> Columns | None:
     sought = _sought(table, settings)
     if sought is None:
         return None
+    program, stated = table.program, settings.position or settings.velocity
+    if (
+        program is not None
+        and stated is None
+        and sought.value == program.position
+        and not table.column(sought.value)
+    ):
+        return None  # of that program, but of another of its tables
     return replace(sought, time=_named(table, sought.time), value=_named(table, sought.value))
 
 
@@ -118,11 +128,14 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
     InputError : naming every option that is needed, or what is wrong with the rows.
     """
     table = _of_particle(table, settings)
+    if settings.time == ROW and table.column(ROW) is None:
+        table = table.with_rows()
     columns = columns_of(table, settings)
     if columns is None:
         raise InputError(what_is_needed(table))
     notes = overridden(table, settings, columns.time, columns.value)
     settings = _completed(table, settings, columns)
+    notes = (*notes, *_without_use(table, settings, columns))
     units = Units.of(settings, conditions)
     time_unit = units.time(settings.time_unit or "s")
     unit = (
@@ -214,6 +227,31 @@ def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Set
         what = f"is a file of {program.name}" if program is not None else "does not say what its numbers are"
         raise InputError(Defect(f"{what}; say {'; '.join(needed)} (or --settings FILE)", file=table.file))
     return completed
+
+
+def _without_use(table: ForeignTable, settings: Settings, columns: Columns) -> tuple[str, ...]:
+    """A note where a pixel is stated and lengths are not in pixels; raises where another clock is stated.
+
+    A film that a program plays slowly has the times of the player.
+    """
+    at, fps = table.header.index(columns.time), settings.frames_per_second
+    if fps is not None and "frame" not in f"{settings.time_unit}":
+        times = np.array([_number(cells[at]) for _, cells in table.rows if len(cells) == len(table.header)])
+        unit = (
+            Units.of(settings, None).time(settings.time_unit or "s") if "d" not in f"{settings.time_unit}" else 0
+        )
+        steps = np.diff(times[np.isfinite(times)])
+        step = float(np.mean(steps[steps < 1.6 * np.median(steps)])) if len(steps) else np.nan  # but lost frames
+        if unit and step > 0 and abs(step * unit * fps - 1) > _SAME_CLOCK:
+            rows, slow = 1 / (step * unit), 1 / (step * fps)
+            rule = (
+                f"is not the {rows:.4g} rows a second of the file: where they are frames on a player's clock, "
+                f"--time-unit {slow:.4g}s is what one of its {settings.time_unit} was; else leave it out"
+            )
+            raise InputError(Defect(rule, file=table.file, field="--fps", value=f"{fps:g}"))
+    if settings.pixel is not None and columns.quantity == "gap" and "px" not in f"{settings.unit}":
+        return (f"--pixel is not used: {columns.value} is in {settings.unit} (--unit px where it is in pixels)",)
+    return ()
 
 
 def _without_lost(table: ForeignTable, columns: Columns) -> tuple[ForeignTable, tuple[str, ...]]:

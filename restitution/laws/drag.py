@@ -155,13 +155,17 @@ STANDARD = CliftGraceWeber1978
 scatter (:mod:`restitution.bounce.unbounded` has the comparison)."""
 
 
+_GREATEST_RE = 1e6
+"""From where on C_D is taken to be constant: the form of the laws drops to zero out there."""
+
+
 def steady(law: DragLaw, weight: float, diameter: float, density: float, viscosity: float) -> float:
     """The speed in m/s at which the drag balances ``weight`` (gravity less buoyancy, N): the terminal speed."""
     from scipy.optimize import brentq
 
     def excess(log_v: float) -> float:
         v = np.exp(log_v)
-        C_D = law(v * diameter * density / viscosity, out_of_range="ignore")
+        C_D = law(min(v * diameter * density / viscosity, _GREATEST_RE), out_of_range="ignore")
         return float(C_D * density * v**2 / 2 * np.pi * diameter**2 / 4 / weight - 1)
 
     stokes = np.log(weight / (3 * np.pi * viscosity * diameter))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from restitution.doubts import of_impacts
+from restitution.doubts import of_gain, of_impacts
 
 
 def impacts(K, seed, n=12, e_dry=0.97):
@@ -34,3 +34,22 @@ def test_a_few_or_nearly_dry_impacts_tell_nothing():
     assert of_impacts(9 * St[:2], e[:2], e_dry) == []
     assert of_impacts([1e4, 2e4, 3e4], [0.955, 0.96, 0.95], 0.97) == []
     assert of_impacts([50.0, 60.0, 80.0], [np.nan] * 3, 0.97) == []
+
+
+def test_stated_conditions_are_asked_about_where_st_is_theirs():
+    St, e, e_dry = impacts(11.0, 1)
+    (doubt,) = of_impacts(9 * St, e, e_dry, ["my"], computed=True)
+    assert "viscosity" in doubt.message
+
+
+@pytest.mark.parametrize(
+    ("e", "sigma", "number"), [([0.7, 1.3], [0.02, 0.02], "impact 4"), ([0.985, 0.6], [0.004, 0.02], "impact 2")]
+)
+def test_a_sphere_that_gains_speed_or_loses_less_than_dry_is_doubted(e, sigma, number):
+    (doubt,) = of_gain([2, 4], e, sigma, 0.97)
+    assert number in doubt.message
+
+
+def test_an_error_explains_what_is_above_the_dry_one():
+    assert of_gain([1, 2, 3], [0.99, 1.1, np.nan], [0.02, 0.1, np.nan], 0.97) == []
+    assert of_gain([1], [0.9], [0.001], None) == []
