@@ -6,11 +6,11 @@ exp(-AIC/2),
 
     AIC = chi^2_aug + 2 k + 2 n_cut,
 
-k being the number of coefficients, n_cut that of the frames left out and chi^2_aug the misfit augmented by that
-of a prior (Jay & Neil, Phys. Rev. D 103, 114502 (2021), doi:10.1103/PhysRevD.103.114502). An approach is smooth:
-all orders from 1 to 5 take part. After a rebound the sphere's own wake brakes it, most in the first
-milliseconds; lower orders fit the frames as well but extrapolate too steadily, so a rebound is always of order 5
-and the prior keeps its coefficients to what gravity, drag and wake can do. Draws from the mixture carry both the
+k being the number of coefficients, n_cut that of the frames left out and chi^2_aug the misfit augmented by that of
+a prior (Jay & Neil, Phys. Rev. D 103, 114502 (2021), doi:10.1103/PhysRevD.103.114502). An approach is smooth: all
+orders from 1 to 5 take part. After a rebound the sphere's own wake brakes it, most in the first milliseconds;
+lower orders fit the frames as well but extrapolate too steadily, so a rebound is always of order 5 and the prior
+keeps its coefficients to what gravity, drag, history force and wake can do. Draws from the mixture carry both the
 noise and the choice of window.
 """
 
@@ -67,9 +67,11 @@ class Prior:
 
         2 c_2 = -g_eff +- (g_eff/2 + V/T),    k! c_k = 0 +- V T^(1-k),    T = sqrt(d/g):
 
-    free flight with buoyancy and added mass, g_eff = g (rho_p - rho_f)/(rho_p + rho_f/2), whose speed V drag and
-    wake may change by its own size within T. (After the first rebound of the 3 mm sphere of Gondret et al. 2002
-    they brake it with 2.6 g, V/T being 2.9 g.)
+    free flight with buoyancy and added mass, g_eff = g (rho_p - rho_f)/(rho_p + rho_f/2), whose speed V drag may
+    change by its own size within T. After an impact of speed U, history force and wake brake the sphere besides,
+    most in the first milliseconds: the covariance has U^2 T^(2-k-l) B_kl more, B being the second moments of
+    k! c_k T^(k-1)/U by the point particle outside the film (``python -m benchmarks.after_rebound``). They are
+    nearly those of one shape of unknown strength, none being one standard deviation off.
     """
 
     g_eff: float
@@ -84,30 +86,29 @@ class Prior:
         """Expected coefficients."""
         return np.array([0.0, 0.0, -self.g_eff / 2, 0.0, 0.0, 0.0])
 
-    def sigma(self, V: float) -> NDArray:
-        """Their standard deviations for a branch of speed ``V``."""
-        higher = [V * self.T ** (1 - k) / math.factorial(k) for k in range(2, _COEFFICIENTS)]
-        return np.array([np.inf, np.inf, higher[0] + self.g_eff / 4, *higher[1:]])
+    def root(self, V: float, U: float = 0.0) -> NDArray:
+        """A root R of the precision, R^T R, of a branch of speed ``V``, after an impact of speed ``U``."""
+        k = np.arange(2, _COEFFICIENTS)
+        unit = self.T ** (1.0 - k) / [math.factorial(n) for n in k]
+        smooth = V * unit
+        smooth[0] += self.g_eff / 4
+        covariance = np.diag(smooth**2) + _BRAKE * np.outer(U * unit, U * unit)
+        root = np.zeros((_COEFFICIENTS, _COEFFICIENTS))
+        size = np.sqrt(np.diag(covariance))  # they are of many orders of magnitude
+        root[2:, 2:] = np.linalg.inv(np.linalg.cholesky(covariance / np.outer(size, size))) / size
+        return root
 
 
-_NO_PRIOR = np.zeros(6), np.full(6, np.inf)
-
-
-def _speed(tau: NDArray, value: NDArray, sigma: NDArray, quantity: str) -> float:
-    """The speed scale of a branch: the greatest among its nearest four frames, or as many as it takes to move."""
-    if quantity == "velocity":
-        return float(np.max(np.abs(value[:4])))
-    steps = max((len(tau) - 1) // 3, 1)
-    way = np.abs(value[3 : 3 * steps + 1 : 3] - value[0])
-    far = np.flatnonzero(way > _SEEN * sigma[0])
-    step = int(far[0]) + 1 if len(far) else steps
-    at = slice(step, 3 * step + 1, step)
-    open_speed = math.sqrt(2) * sigma[0] / abs(tau[-1] - tau[0])  # of positions that are all the same
-    return max(float(np.max(np.abs((value[at] - value[0]) / (tau[at] - tau[0])))), open_speed)
-
-
-_SEEN = 10.0
-"""How far, in errors of a frame, a sphere must have gone to tell its speed."""
+_BRAKE = np.array(
+    [
+        [0.284, -0.937, 2.496, -3.782],
+        [-0.937, 3.153, -8.461, 12.875],
+        [2.496, -8.461, 22.857, -34.927],
+        [-3.782, 12.875, -34.927, 53.659],
+    ]
+)
+"""B for k and l from 2 to 5."""
+_NO_PRIOR = np.zeros(6), np.zeros((6, 6))
 
 
 @dataclass(frozen=True)
@@ -126,6 +127,24 @@ class Points:
     def tau(self) -> NDArray:
         """Mean time of each."""
         return self.moments[:, 1]
+
+
+def speed_of(branch: Points, quantity: str) -> float:
+    """The speed scale of a branch: the greatest among its nearest four frames, or as many as it takes to move."""
+    tau, value, sigma = branch.tau, branch.value, branch.sigma
+    if quantity == "velocity":
+        return float(np.max(np.abs(value[:4])))
+    steps = max((len(tau) - 1) // 3, 1)
+    way = np.abs(value[3 : 3 * steps + 1 : 3] - value[0])
+    far = np.flatnonzero(way > _SEEN * sigma[0])
+    step = int(far[0]) + 1 if len(far) else steps
+    at = slice(step, 3 * step + 1, step)
+    open_speed = math.sqrt(2) * sigma[0] / abs(tau[-1] - tau[0])  # of positions that are all the same
+    return max(float(np.max(np.abs((value[at] - value[0]) / (tau[at] - tau[0])))), open_speed)
+
+
+_SEEN = 10.0
+"""How far, in errors of a frame, a sphere must have gone to tell its speed."""
 
 
 def points(tau: NDArray, value: NDArray, sigma: float, rebound: bool) -> Points:
@@ -157,16 +176,16 @@ def _means(values: NDArray, begins: NDArray) -> NDArray:
     return np.add.reduceat(values, begins, axis=0) / n.reshape(-1, *[1] * (values.ndim - 1))
 
 
-def average(branch: Points, quantity: str, prior: Prior, rebound: bool) -> Branch:
-    """Fit all windows and orders to the points of a branch.
+def average(branch: Points, quantity: str, prior: Prior, impact_speed: float | None = None) -> Branch:
+    """Fit all windows and orders to the points of a branch; after a rebound ``impact_speed`` is that before it.
 
     Of velocities the gap polynomial without its constant is fitted. At least two points are needed. Where no
     fit with four or more degrees of freedom comes within twice the noise (chi^2_aug over degrees of freedom
     above 4), the noise is scaled up to that of the best one.
     """
     N, first = len(branch.value), _first(quantity)
-    normal = prior.mean(), prior.sigma(_speed(branch.tau, branch.value, branch.sigma, quantity))
-    orders = REBOUND if rebound else APPROACH
+    normal = prior.mean(), prior.root(speed_of(branch, quantity), impact_speed or 0.0)
+    orders = APPROACH if impact_speed is None else REBOUND
     coefficients, roots, misfit, unknowns, windows = [], [], [], [], []
     for p in orders:
         lengths = _windows(2 - first, N)  # gap and velocity have no prior, so they need that many frames
@@ -182,7 +201,7 @@ def average(branch: Points, quantity: str, prior: Prior, rebound: bool) -> Branc
     scale = np.min(misfit[tested] / free[tested], initial=np.inf)
     if 4 < scale < np.inf:  # no polynomial describes the frames within twice the noise: it is larger
         noisier = replace(branch, sigma=branch.sigma * np.sqrt(scale) * (1 + 1e-6))
-        return average(noisier, quantity, prior, rebound)
+        return average(noisier, quantity, prior, impact_speed)
     aic = misfit + 2 * unknowns + 2 * (N - windows)
     weights = np.exp(-0.5 * (aic - aic.min()))
     reaches = np.maximum.accumulate(np.abs(branch.tau))[windows - 1]
@@ -211,10 +230,9 @@ def _fit(
         design *= powers / scale[:, :, None]
     inside = (np.arange(len(value)) < windows[:, None]) / branch.sigma
     unscale = scale ** -powers.astype(float)
-    A = np.concatenate(
-        [inside[:, :, None] * design, np.eye(len(powers)) * (unscale / prior[1][used])[:, None]], axis=1
-    )
-    expected = np.broadcast_to(prior[0][used] / prior[1][used], (len(windows), len(powers)))
+    mean, root = prior[0][used], prior[1][used, used]
+    A = np.concatenate([inside[:, :, None] * design, root * unscale[:, None, :]], axis=1)
+    expected = np.broadcast_to(root @ mean, (len(windows), len(powers)))
     b = np.concatenate([inside * value, expected], axis=1)
     Q, R = np.linalg.qr(A)
     inverse = np.linalg.inv(R)

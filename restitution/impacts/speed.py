@@ -14,9 +14,8 @@ zero. The definitions differ in the frames that the branches are fitted to:
 Uncertainties come from draws of the averaged fits, so they follow from the position noise and from the choice
 of window. Errors of d, density and viscosity are not in them. On synthetic flights, every other one with a wake
 that brakes the sphere after the rebound by up to v_in/sqrt(d/g) (about three times that after the first rebound
-of the 3 mm sphere of Gondret et al. 2002), the 68 % intervals of v_in, v_out and e_eff cover 67 to 70 % for gap
-tracks and 69 to 78 % for velocity tracks; of the flights with a wake alone 45 to 65 %, e_eff being low by one
-standard deviation: what decays within a frame or two cannot be seen.
+of the 3 mm sphere of Gondret et al. 2002), the 68 % intervals of v_in, v_out and e_eff cover 72 to 78 % for gap
+tracks and 69 to 80 % for velocity tracks: what decays within a frame or two cannot be seen, and is allowed for.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
-from restitution.impacts.branch import Branch, Prior, average, line, points
+from restitution.impacts.branch import Branch, Points, Prior, average, line, points, speed_of
 from restitution.stokes import Speed
 from restitution.tracks import DETECTION, Contact, Track
 
@@ -121,7 +120,7 @@ class SpeedMeasure:
             except UnresolvedError:
                 continue
             origin = float(self.track.time_s[use[0]])
-            branch = self._fit(use, origin, rebound)
+            branch = self._fit(use, origin, self._before(contact) if rebound else None)
             begin, end = (origin, origin + branch.reach) if rebound else (origin - branch.reach, origin)
             found.append(ReadBranch(begin, end, origin, branch.mean(), rebound))
         return found
@@ -139,8 +138,8 @@ class SpeedMeasure:
         before, after = self._usable(before, "approach"), self._usable(after, "rebound")
         origin = 0.5 * (low + high)
         incoming, outgoing = (
-            self._fit(before, origin, False).draw(DRAWS, rng),
-            self._fit(after, origin, True).draw(DRAWS, rng),
+            self._fit(before, origin).draw(DRAWS, rng),
+            self._fit(after, origin, self._seen_speed(before)).draw(DRAWS, rng),
         )
         if self.track.quantity == "velocity":
             tau = left = rng.uniform(
@@ -192,18 +191,34 @@ class SpeedMeasure:
         first = 0.5 * abs(value[0]) * float(np.median(np.diff(self.track.time_s)))
         return first + cumulative_trapezoid(value, time, initial=0.0)
 
-    def _fit(self, frames: NDArray, origin: float, rebound: bool) -> Branch:
-        t, y = self.track.time_s[frames], self.track.value[frames]
-        branch = points(t - origin, y, self.track.sigma, rebound)
+    def _fit(self, frames: NDArray, origin: float, impact_speed: float | None = None) -> Branch:
+        """The fits of an approach, or of the rebound from an impact."""
+        branch = self._points(frames, origin, impact_speed is not None)
         if self.speed is Speed.WINDOW:
             return line(branch, self.track.quantity)
-        return average(branch, self.track.quantity, Prior.of(self.conditions), rebound)
+        return average(branch, self.track.quantity, Prior.of(self.conditions), impact_speed)
 
-    def _alone(self, frames: list[int], branch: str, rng: np.random.Generator) -> tuple[NDArray, float]:
+    def _points(self, frames: NDArray, origin: float, rebound: bool) -> Points:
+        return points(self.track.time_s[frames] - origin, self.track.value[frames], self.track.sigma, rebound)
+
+    def _seen_speed(self, approach: NDArray) -> float:
+        """How fast the frames of an approach are, as a scale."""
+        return speed_of(self._points(approach, float(self.track.time_s[approach[0]]), False), self.track.quantity)
+
+    def _before(self, contact: Contact) -> float:
+        """The scale of the speed before a rebound; 0 where neither frames nor the source tell it."""
+        try:
+            return self._seen_speed(self._usable(list(contact.approach)[::-1], "approach"))
+        except UnresolvedError:
+            return self.conditions.impact.speed if self.conditions.impact is not None else 0.0
+
+    def _alone(
+        self, frames: list[int], branch: str, rng: np.random.Generator, impact_speed: float | None = None
+    ) -> tuple[NDArray, float]:
         """Draws of a branch whose other side is missing, and the time of its nearest frame, their origin."""
         use = self._usable(frames, branch)
         origin = float(self.track.time_s[use[0]])
-        return self._fit(use, origin, branch == "rebound").draw(DRAWS, rng), origin
+        return self._fit(use, origin, impact_speed).draw(DRAWS, rng), origin
 
     def _scale(self, rng: np.random.Generator) -> NDArray:
         """Draws of the factor that the track's scale error puts on its speeds; it cancels in their ratio."""
@@ -212,7 +227,7 @@ class SpeedMeasure:
     def _quoted(self, contact: Contact, rng: np.random.Generator) -> Speeds:
         """A record that begins on the rebound: the impact speed is the quoted one."""
         quoted = self.conditions.impact
-        outgoing, origin = self._alone(list(contact.rebound), "rebound", rng)
+        outgoing, origin = self._alone(list(contact.rebound), "rebound", rng, quoted.speed)
         tau = _root(outgoing, np.zeros(DRAWS))
         v_in = rng.normal(quoted.speed, quoted.speed_sigma, DRAWS)
         v_out = self._scale(rng) * _moving(_slope(outgoing, tau), "rebound")
