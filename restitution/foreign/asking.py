@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from restitution.errors import Defect
+import numpy as np
+
+from restitution.errors import Defect, InputError
 from restitution.foreign.heading import FRAMES
+from restitution.foreign.number_text import as_number
 from restitution.foreign.programs import POSITIONS, TIMES
-from restitution.foreign.settings import Settings
+from restitution.foreign.settings import Settings, Units
 from restitution.foreign.table import ROW, ForeignTable
 from restitution.units import SPEED, UnitError, quantity
 
+_SAME_CLOCK = 0.02
+"""Part by which frames a second may differ from the rows a second of a file that has times of its own."""
 _MOST_NAMED = 30
 """Columns that a message names."""
 _COUNTED = [name for name, unit in FRAMES.items() if unit == "frame" and name != "fr"]
@@ -91,3 +96,28 @@ def overridden(table: ForeignTable, settings: Settings, time: str, value: str) -
         for name, option, given in stated
         if given is not None and (own := table.units.get(name)) and own != given
     )
+
+
+def without_use(table: ForeignTable, settings: Settings, time: str, value: str) -> tuple[str, ...]:
+    """A note where a pixel is stated and lengths are not in pixels; raises where another clock is stated.
+
+    A film that a program plays slowly has the times of the player.
+    """
+    at, fps = table.header.index(time), settings.frames_per_second
+    if fps is not None and "frame" not in f"{settings.time_unit}":
+        times = np.array([as_number(cells[at]) for _, cells in table.rows if len(cells) == len(table.header)])
+        unit = (
+            Units.of(settings, None).time(settings.time_unit or "s") if "d" not in f"{settings.time_unit}" else 0
+        )
+        steps = np.diff(times[np.isfinite(times)])
+        step = float(np.mean(steps[steps < 1.6 * np.median(steps)])) if len(steps) else np.nan  # but lost frames
+        if unit and step > 0 and abs(step * unit * fps - 1) > _SAME_CLOCK:
+            rows, slow = 1 / (step * unit), 1 / (step * fps)
+            rule = (
+                f"is not the {rows:.4g} rows a second of the file: where they are frames on a player's clock, "
+                f"--time-unit {slow:.4g}s is what one of its {settings.time_unit} was; else leave it out"
+            )
+            raise InputError(Defect(rule, file=table.file, field="--fps", value=f"{fps:g}"))
+    if settings.pixel is not None and "px" not in f"{settings.unit}":
+        return (f"--pixel is not used: {value} is in {settings.unit} (--unit px where it is in pixels)",)
+    return ()

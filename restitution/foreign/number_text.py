@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from datetime import date
@@ -58,6 +59,14 @@ def plain(cell: str, decimal: Decimal = ".") -> str:
 def is_number(cell: str) -> bool:
     """Whether a cell is a number under either decimal sign."""
     return bool(NUMBER.fullmatch(plain(cell, ",")))
+
+
+def as_number(cell: str) -> float:
+    """A plain cell as a number; NaN where it is none."""
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan
 
 
 def is_lost(cell: str) -> bool:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from restitution import datasets
 from restitution.conditions import LARGEST, SMALLEST, Conditions
 from restitution.errors import Defect, InputError
-from restitution.foreign.asking import overridden, what_is_needed
+from restitution.foreign.asking import overridden, what_is_needed, without_use
+from restitution.foreign.number_text import as_number
 from restitution.foreign.settings import Settings, Units
 from restitution.foreign.table import ROW, ForeignTable, in_words, lost_rows
 from restitution.tables.reading import read_table
@@ -23,8 +22,6 @@ Quantity = Literal["gap", "velocity"]
 COLUMNS: dict[Quantity, str] = {"gap": "gap_m", "velocity": "velocity_m_s"}
 """The project's own names of the value of a track."""
 _SCHEMAS: dict[Quantity, str] = {"gap": "trajectory", "velocity": "settling"}
-_SAME_CLOCK = 0.02
-"""Part by which frames a second may differ from the rows a second of a file that has times of its own."""
 SURE = 0.6
 """Likelihood below which a position counts as lost; the default of DeepLabCut."""
 
@@ -135,7 +132,7 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
         raise InputError(what_is_needed(table))
     notes = overridden(table, settings, columns.time, columns.value)
     settings = _completed(table, settings, columns)
-    notes = (*notes, *_without_use(table, settings, columns))
+    notes = (*notes, *without_use(table, settings, columns.time, columns.value))
     units = Units.of(settings, conditions)
     time_unit = units.time(settings.time_unit or "s")
     unit = (
@@ -229,31 +226,6 @@ def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Set
     return completed
 
 
-def _without_use(table: ForeignTable, settings: Settings, columns: Columns) -> tuple[str, ...]:
-    """A note where a pixel is stated and lengths are not in pixels; raises where another clock is stated.
-
-    A film that a program plays slowly has the times of the player.
-    """
-    at, fps = table.header.index(columns.time), settings.frames_per_second
-    if fps is not None and "frame" not in f"{settings.time_unit}":
-        times = np.array([_number(cells[at]) for _, cells in table.rows if len(cells) == len(table.header)])
-        unit = (
-            Units.of(settings, None).time(settings.time_unit or "s") if "d" not in f"{settings.time_unit}" else 0
-        )
-        steps = np.diff(times[np.isfinite(times)])
-        step = float(np.mean(steps[steps < 1.6 * np.median(steps)])) if len(steps) else np.nan  # but lost frames
-        if unit and step > 0 and abs(step * unit * fps - 1) > _SAME_CLOCK:
-            rows, slow = 1 / (step * unit), 1 / (step * fps)
-            rule = (
-                f"is not the {rows:.4g} rows a second of the file: where they are frames on a player's clock, "
-                f"--time-unit {slow:.4g}s is what one of its {settings.time_unit} was; else leave it out"
-            )
-            raise InputError(Defect(rule, file=table.file, field="--fps", value=f"{fps:g}"))
-    if settings.pixel is not None and columns.quantity == "gap" and "px" not in f"{settings.unit}":
-        return (f"--pixel is not used: {columns.value} is in {settings.unit} (--unit px where it is in pixels)",)
-    return ()
-
-
 def _without_lost(table: ForeignTable, columns: Columns) -> tuple[ForeignTable, tuple[str, ...]]:
     """The rows that have a time and a position; a particle's frames in the order of time."""
     lost = set(lost_rows(table, [columns.time, columns.value]))
@@ -261,32 +233,20 @@ def _without_lost(table: ForeignTable, columns: Columns) -> tuple[ForeignTable, 
     own = quality and table.column(f"{columns.value.rpartition('/')[0]}/{quality}".lstrip("/"))
     if own:
         k = table.header.index(own)
-        lost |= {i for i, (_, cells) in enumerate(table.rows) if _below(cells[k], SURE)}
+        lost |= {i for i, (_, cells) in enumerate(table.rows) if not as_number(cells[k]) >= SURE}  # nor NaN
     if len(lost) == len(table.rows):
         rule = f"has no row with both {columns.time} and {columns.value}"
         raise InputError(Defect(rule, file=table.file))
     rows = [row for i, row in enumerate(table.rows) if i not in lost]
     if table.program is not None and table.program.particle:
         at = table.header.index(columns.time)
-        rows.sort(key=lambda row: _number(row[1][at]))
+        rows.sort(key=lambda row: as_number(row[1][at]))
     notes: tuple[str, ...] = ()
     if lost:
         lines = [table.rows[i][0] for i in sorted(lost)]
         one = len(lines) == 1
         notes = (f"{len(lines)} frame{'' if one else 's'} without a position left out: {in_words(lines)}",)
     return replace(table, rows=rows), notes
-
-
-def _below(cell: str, limit: float) -> bool:
-    value = _number(cell)
-    return np.isnan(value) or value < limit
-
-
-def _number(cell: str) -> float:
-    try:
-        return float(cell)
-    except ValueError:
-        return np.nan
 
 
 def _gap_from(
