@@ -30,7 +30,7 @@ def still(track: Track) -> list[Doubt]:
     n, value = len(track.value), track.value
     noise = 2 * (np.sqrt(2 * np.log(n)) + 2) * track.sigma
     moves = float(np.ptp(value) if track.quantity == "gap" else 2 * np.max(np.abs(value)))
-    other = "is it the one along the wall? Take that towards it (--column gap_m=NAME, --axis)"
+    other = "is it the one along the wall? Take that towards it (--column gap_m=NAME)"
     if moves <= noise:
         what = f"moves by {moves:.2g} m, no more than its noise" if track.quantity == "gap" else "is that of rest"
         return [Doubt("still", f"this coordinate {what}: {other}")]

@@ -51,7 +51,8 @@ class ForeignTable:
     def column(self, name: str) -> str | None:
         """The column of that name, in whatever case, of the only track, or of that number; None if none is."""
         exact, lower, bare, last = self._names
-        for known in (name, *mistaken(name)):
+        joined = () if self.program is None else (self.program.renamed(name),)  # as the file itself has it
+        for known in (name, *joined, *mistaken(name)):
             low = known.lower()
             for fits in (exact.get(known, ()), lower.get(low, ()), bare.get(low, ()), last.get(low, ())):
                 if len(fits) == 1:
