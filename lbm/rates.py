@@ -119,7 +119,7 @@ class Rates:
         both, L = (L_q + 3 L_m)/4. So a slower q makes up for the fast m that keeps a flow quiet.
 
         That holds for steady flow: at low viscosity q takes hundreds of steps, and a film of about one cell that a
-        sphere closes faster than that is lost. Spheres that meet walls want :meth:`RatesByPlace.quiet`.
+        sphere closes faster than that is lost. Spheres that meet walls want :meth:`RatesByPlace.balanced`.
         """
         slow = 1 / cls.two_relaxation_times(viscosity, magic).q - 0.5
         fast = min(1.0, slow)

@@ -63,6 +63,14 @@ class RatesByPlace:
         """:meth:`Rates.two_relaxation_times` near walls, :meth:`Rates.quiet` elsewhere."""
         return cls(Rates.quiet(viscosity), Rates.two_relaxation_times(viscosity), reach, blend)
 
+    @classmethod
+    def balanced(cls, viscosity: float, reach: int = REACH, blend: int = BLEND) -> RatesByPlace:
+        """:meth:`Rates.two_relaxation_times` near walls, :meth:`Rates.balanced` elsewhere.
+
+        Then also the surface of a sphere far from walls stays where it is, and films of a cell are not lost.
+        """
+        return cls(Rates.balanced(viscosity), Rates.two_relaxation_times(viscosity), reach, blend)
+
     @property
     def viscosity(self) -> float:
         """Kinematic shear viscosity in lattice units."""
@@ -102,5 +110,5 @@ def _between(one: Rates, other: Rates, share: float) -> Rates:
     )
 
 
-PRESETS = {**UNIFORM, "quiet-by-place": RatesByPlace.quiet}
+PRESETS = {**UNIFORM, "quiet-by-place": RatesByPlace.quiet, "balanced-by-place": RatesByPlace.balanced}
 """Presets that follow from the viscosity alone, by name."""

@@ -127,7 +127,7 @@ def apex(gap: np.ndarray, velocity: np.ndarray) -> float:
     return float(gap[np.argmin(gap) :].max())
 
 
-def flight(speed: float, diameter: int = 10, preset: Preset = RatesByPlace.quiet, width=5, height=7) -> float:
+def flight(speed: float, diameter: int = 10, preset: Preset = RatesByPlace.balanced, width=5, height=7) -> float:
     """Gap in diameters, 6.24 d/U after its launch, of a sphere sent up from a wall through fluid at rest.
 
     The rebound of St 152 as it leaves the film: 8.34 times the density of the fluid, Re = U d/nu = 164,
@@ -147,7 +147,7 @@ def flight(speed: float, diameter: int = 10, preset: Preset = RatesByPlace.quiet
     return float(ball.track()["gap"][-1]) / n
 
 
-def base_pressure(diameter: int = 8, preset: Preset = RatesByPlace.quiet, width=4, height=4) -> np.ndarray:
+def base_pressure(diameter: int = 8, preset: Preset = RatesByPlace.balanced, width=4, height=4) -> np.ndarray:
     """Mean pressure in a closed box over rho c_s^2, less that at rest, while a sphere lies on its floor.
 
     It falls from a gap of d/2 at about 0.03 cells a step, nu = 0.02, and rests; once a d/c_s over 40 of them.

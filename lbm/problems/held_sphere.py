@@ -46,7 +46,7 @@ def held_sphere(
     diameter: int,
     reynolds: float,
     stream: Stream | None = None,
-    rates: Callable[[float], Rates | RatesByPlace] = Rates.quiet,
+    rates: Callable[[float], Rates | RatesByPlace] = Rates.balanced,
     dtype: str = "float32",
 ) -> Drag:
     """Drag of a sphere of ``diameter`` cells at Re = U d/nu."""

@@ -86,7 +86,7 @@ def unbalanced_crossing(velocity=(0.05, 0.02, -0.01), viscosity: float = 0.004, 
     """
     flow = Simulation((24, 24, 24), Rates.quiet(viscosity))
     start = Sphere(_RADIUS, 1.0, (8.1, 8.3, 7.9), velocity=velocity)
-    ball = Spheres([start], drive=lambda step, gap: velocity, crossing_momentum=True)
+    ball = Spheres([start], drive=lambda step, gap: velocity)
     flow.add(ball)
     count = round(2 * _RADIUS / float(np.linalg.norm(velocity)))
 

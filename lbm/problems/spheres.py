@@ -177,7 +177,6 @@ def drag_in_frame(
     viscosity=0.05,
     width=5.0,
     preset: Preset = Rates.two_relaxation_times,
-    crossing_momentum: bool = False,
 ) -> float:
     """Mean drag, against the motion of the sphere through the fluid, after both were set going at once."""
     shape = (round(width * diameter),) * 3
@@ -185,7 +184,7 @@ def drag_in_frame(
     flow.set_flow(velocity=fluid_velocity)
     velocity = tuple(float(v) for v in sphere_velocity)
     start = Sphere(diameter / 2, 2.0, (3.3, 4.17, 5.06), velocity=velocity)
-    ball = Spheres([start], drive=lambda step, gap: velocity, crossing_momentum=crossing_momentum)
+    ball = Spheres([start], drive=lambda step, gap: velocity)
     flow.add(ball)
     relative = np.subtract(sphere_velocity, fluid_velocity)
     flow.run(int(3 * diameter / np.linalg.norm(relative)))

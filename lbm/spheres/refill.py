@@ -8,7 +8,7 @@ cell is no fluid, the mean over the fluid neighbours takes its place.
 A cell that the sphere covers is lost to the fluid with its momentum, one that comes free brings momentum with it.
 The links count only what crosses them, in the frame of the surface, which takes for granted that these cells move
 with the surface. On the lattice they do not: at Re 100 and ten cells a diameter the fluid gains 5 % more momentum
-than the links take from the sphere. So the sphere may get the rest, cell by cell::
+than the links take from the sphere. So the sphere gets the rest, cell by cell::
 
     p = +(j - rho u)  covered,      p = -(j - rho u)  freed,      u = x'_s - x_s + omega x r
 

@@ -9,8 +9,8 @@
    F with gravity and buoyancy; the fluid's force is its momentum exchange over the very step. I_f is the moment
    of inertia of the displaced fluid: the last two terms cancel for all but changes from step to step, which in
    fluid of low viscosity would otherwise grow, the fluid having no pressure to pass on a torque at once.
-3. Cells that come free are filled; with ``crossing_momentum`` what momentum they and the covered ones have beyond
-  that of the surface goes to the sphere, within the time of sound (:mod:`lbm.spheres.spheres.refill`).
+3. Cells that come free are filled; what momentum they and the covered ones have beyond that of the surface goes
+   to the sphere, within the time of sound (:mod:`lbm.spheres.refill`).
 4. What mass all this has brought into the fluid or out of it goes back (:mod:`lbm.spheres.mass`).
 
 A sphere whose centre lies on a free-slip face is the whole one, of which the box holds a half or a quarter
@@ -97,9 +97,6 @@ class Spheres(Body):
         its arguments alone, for a checkpoint knows it by what it gives at some of them.
     interpolation : "linear" or "central-linear", a scheme of :mod:`lbm.bodies.reflection`.
     fraction : size of the sub-steps at a wall, in (0, 0.5] of gap over speed; see :mod:`lbm.spheres.wall_motion`.
-    crossing_momentum : whether spheres get the momentum of cells that they cover and free, without which a moving
-        one feels 2 to 8 % less drag than one held in the equal stream (:mod:`lbm.spheres.refill`). The kept runs
-        and their comparisons are without it.
 
     Attributes
     ----------
@@ -126,7 +123,6 @@ class Spheres(Body):
         drive: Drive | None = None,
         interpolation: str = "linear",
         fraction: float = FRACTION,
-        crossing_momentum: bool = False,
     ):
         if interpolation not in SCHEMES:
             raise InputError(f"interpolation {interpolation!r} unknown; known: {', '.join(SCHEMES)}")
@@ -145,7 +141,6 @@ class Spheres(Body):
         self.scheme = SCHEMES[interpolation]
         self.forces, self.torques = np.zeros_like(self.centres), np.zeros_like(self.centres)
         self.surplus = np.zeros(len(spheres))
-        self.crossing_momentum = bool(crossing_momentum)
         self.crossings = np.zeros((len(spheres), 2, 3))
         self.impacts: list[SphereImpact] = []
         self._at_walls = {
@@ -226,8 +221,7 @@ class Spheres(Body):
         for s in range(len(self.radii)):
             sums = np.zeros(7)
             refill(populations, grid, parity, before, surfaces, s, sums)
-            if self.crossing_momentum:
-                self.crossings[s] += of_whole(mirrors[s], sums[:3], sums[3:6])
+            self.crossings[s] += of_whole(mirrors[s], sums[:3], sums[3:6])
             self.surplus[s] += parts(mirrors[s]) * sums[6]
 
     def _move(self, s: int, step: float, grid) -> None:
@@ -291,7 +285,6 @@ class Spheres(Body):
             "contact": None if self.contact is None else self.contact.describe(),
             "drive": sampled(self.drive, [(step, r * self.radii[0]) for step in _STEPS for r in _GAPS]),
             "fraction": float(self.fraction),
-            **({"crossing_momentum": True} if self.crossing_momentum else {}),
         }
 
     def state(self) -> dict[str, np.ndarray]:
