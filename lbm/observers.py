@@ -109,7 +109,11 @@ class DivergenceGuard:
 
 def _warn_of_grid_reynolds(flow: Flow, speed: float) -> None:
     moving = any(isinstance(face, NoSlip) and face.moves for face in flow.faces)
-    shown = flow.rates.grid_reynolds_at_moving_walls if moving else flow.rates.grid_reynolds
+    rates = flow.rates
+    shown = min(
+        rates.grid_reynolds_at_moving_walls if moving else rates.grid_reynolds,
+        rates.grid_reynolds_at_bodies if flow.bodies else rates.grid_reynolds,
+    )
     found = speed / flow.rates.viscosity
     if found > shown and not flow.warned_of_grid_reynolds:
         flow.warned_of_grid_reynolds = True

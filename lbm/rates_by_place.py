@@ -87,9 +87,14 @@ class RatesByPlace:
         return self.bulk.grid_reynolds
 
     @property
+    def grid_reynolds_at_bodies(self) -> float:
+        """That of the bulk; see :attr:`Rates.grid_reynolds_at_bodies`."""
+        return self.bulk.grid_reynolds_at_bodies
+
+    @property
     def grid_reynolds_at_moving_walls(self) -> float:
         """That of the rates near walls: a square cavity whose lid moves at 42 diverges (benchmarks/README.md)."""
-        return self.near_walls.grid_reynolds
+        return self.near_walls.grid_reynolds_at_moving_walls
 
     def layers(self) -> tuple[Rates, ...]:
         """Rates of the first, second, ... layer of cells from a wall; the last ones are those of all others."""

@@ -7,6 +7,7 @@ import pytest
 
 from lbm import Inlet, InputError, OutsideRangeWarning, Rates, RatesByPlace, Simulation
 from lbm.observers import Sums
+from lbm.problems.cavity import cubic_cavity
 from lbm.spheres import Sphere, Spheres
 
 
@@ -79,6 +80,21 @@ def test_held_sphere_at_re_100_is_stable_at_8_cells():
     flow.add(ball)
     flow.run(round(20 * d / speed))
     assert ball.forces[0, 0] > 0
+
+
+def test_a_body_lowers_the_grid_reynolds_number_that_is_warned_of():
+    speed, d = 0.05, 6
+    for reynolds, warned in ((0.9 * 42, 0), (1.1 * 42, 1)):
+        flow = Simulation((2 * d, 2 * d, 2 * d), Rates.balanced(speed / reynolds))
+        flow.add(Spheres([Sphere(d / 2, 1.0, (d, d, d))], drive=lambda step, gap: (speed, 0.0, 0.0)))
+        flow.set_flow(1.0, (speed, 0, 0))
+        with pytest.warns(OutsideRangeWarning, match="up to 42") if warned else nullcontext():
+            flow.run(100)
+
+
+def test_a_cavity_that_never_settles_is_refused():
+    with pytest.raises(InputError, match="at least 26 cells"):
+        cubic_cavity(24, 1000.0)
 
 
 @pytest.mark.parametrize(("preset", "shown"), [(Rates.two_relaxation_times, 10), (RatesByPlace.quiet, 53)])
