@@ -47,6 +47,7 @@ CANDIDATES: dict[str, Callable] = {
         )
         for reach, blend in ((1, 0), (3, 0), (6, 0), (12, 0), (1, 4), (3, 6))
     },
+    "balanced-by-place": RatesByPlace.balanced,
     **{f"m alone by place, reach {reach}": lambda nu, reach=reach: _m_by_place(nu, reach) for reach in (1, 3, 6)},
 }
 UNIFORM = 6

@@ -204,6 +204,12 @@ def rest() -> Iterator[Check]:
     yield _row("base pressure at rest", "d 8, nu 0.02", found[-1], 0, None, _EXACT)
 
 
+def beads() -> Iterator[Check]:
+    """Fastest fall of free beads at Re 370, which still gain speed when they meet the floor."""
+    for s, speed in enumerate(bouncing.beads()):
+        yield _row("free beads, top speed", f"d 10, Re 370, bead {s + 1}", speed, 1, None, "standard drag curve")
+
+
 GROUPS: dict[str, Callable[[], Iterator[Check]]] = {
     "arrays": arrays,
     "arrays-central-linear": lambda: arrays("central-linear"),
@@ -225,6 +231,7 @@ GROUPS: dict[str, Callable[[], Iterator[Check]]] = {
     "contact": contact,
     "flight": flight,
     "rest": rest,
+    "beads": beads,
 }
 """What is measured together, by name."""
 

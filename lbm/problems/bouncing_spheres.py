@@ -147,6 +147,28 @@ def flight(speed: float, diameter: int = 10, preset: Preset = RatesByPlace.balan
     return float(ball.track()["gap"][-1]) / n
 
 
+def beads(diameter: int = 10, speed: float = 0.05, preset: Preset = RatesByPlace.balanced) -> np.ndarray:
+    """Fastest fall of each of three free beads over ``speed``, their terminal speed by the standard drag curve.
+
+    Glass in water (2.5 times as dense) at Re 370, C_D 0.62 (Clift, Grace & Weber 1978); they fall 15 d from rest
+    through a box 6 x 6 x 20 d, side by side, two diameters apart, and bounce off its floor.
+    """
+    n, density, viscosity = diameter, 2.5, speed * diameter / 370
+    radius, height = n / 2, 20 * n
+    flow = Simulation((6 * n, 6 * n, height), preset(viscosity), faces={"z": "no-slip"}, dtype="float32")
+    places = [(1.5, 1.5), (3.6, 1.7), (2.4, 3.5)]
+    falling = Spheres(
+        [Sphere(radius, density, (x * n, y * n, height - 3.5 * n - 4 * i)) for i, (x, y) in enumerate(places)],
+        gravity=(0.0, 0.0, -0.75 * 0.62 * speed**2 / n / (density - 1)),
+        film=film(radius, viscosity, floor=1e-3 * radius),
+        contact=DryRebound(0.97, 2 / 3 * math.pi * radius**3, n, viscosity),
+    )
+    flow.add(falling)
+    while len({impact.sphere for impact in falling.impacts}) < len(places):
+        flow.run(200)
+    return np.array([-falling.track(s)["vz"].min() / speed for s in range(len(places))])
+
+
 def base_pressure(diameter: int = 8, preset: Preset = RatesByPlace.balanced, width=4, height=4) -> np.ndarray:
     """Mean pressure in a closed box over rho c_s^2, less that at rest, while a sphere lies on its floor.
 
