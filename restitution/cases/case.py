@@ -83,9 +83,9 @@ class Numerics(Record):
     sides: Literal["periodic", "no-slip", "free-slip"] = "periodic"
     top: Literal["no-slip", "free-slip", "outlet"] = "no-slip"
     precision: Literal["float32", "float64"] = "float32"
-    rates: Literal[
-        "balanced-by-place", "balanced", "two-relaxation-times", "quiet", "quiet-by-place", "dhumieres2002"
-    ] = "balanced-by-place"
+    rates: Literal["balanced-by-place", "balanced", "two-relaxation-times", "quiet", "dhumieres2002"] = (
+        "balanced-by-place"
+    )
     interpolation: Literal["linear", "central-linear"] = "linear"
     symmetry: Literal["none", "quarter"] | None = None
 
