@@ -33,9 +33,9 @@ from restitution.validation.verdict import Verdict
 ROOT = Path(__file__).parent.parent
 PLANTED, OTHER = "planted.json", "other precision"
 SOLVER = (
-    "shear-wave", "poiseuille", "force-balance", "falling-momentum", "shear-rotation", "force-noise",
-    "added-mass-touching", "film-force", "wall-approach-10", "sub-steps", "impact-momentum", "imposed-restitution",
-    "flight-li_drop1", "restart",
+    "shear-wave", "poiseuille", "force-balance", "falling-momentum", "shear-rotation", "frames-fast",
+    "force-noise", "added-mass-touching", "film-force", "wall-approach-10", "sub-steps", "impact-momentum",
+    "imposed-restitution", "flight-li_drop1", "restart",
 )  # fmt: skip
 """Rows that are run for an error of the solver; those of kept runs are stale then and say no more."""
 PARTICLE = (
