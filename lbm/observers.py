@@ -19,6 +19,7 @@ from lbm.fluid import fields
 from lbm.fluid.stencil import CS2
 from lbm.io.vtkhdf import write_image
 from lbm.rates import Rates
+from lbm.rates_by_place import RatesByPlace
 from lbm.scales import Scales
 
 __all__ = ["Average", "Checkpoint", "DivergenceGuard", "FieldOutput", "Observer", "Probe", "Sums", "checked"]
@@ -108,16 +109,11 @@ class DivergenceGuard:
 
 
 def _warn_of_grid_reynolds(flow: Flow, speed: float) -> None:
-    moving = any(isinstance(face, NoSlip) and face.moves for face in flow.faces)
-    rates = flow.rates
-    shown = min(
-        rates.grid_reynolds_at_moving_walls if moving else rates.grid_reynolds,
-        rates.grid_reynolds_at_bodies if flow.bodies else rates.grid_reynolds,
-    )
+    shown = _shown_stable(flow, flow.rates)
     found = speed / flow.rates.viscosity
     if found > shown and not flow.warned_of_grid_reynolds:
         flow.warned_of_grid_reynolds = True
-        better = " or Rates.balanced" if Rates.balanced(flow.rates.viscosity).grid_reynolds > shown else ""
+        better = " or Rates.balanced" if _shown_stable(flow, Rates.balanced(flow.rates.viscosity)) > shown else ""
         warnings.warn(
             f"grid Reynolds number {found:.3g} by step {flow.steps} (speed {speed:.3g}, viscosity "
             f"{flow.rates.viscosity:.3g}): with these rates flows were shown to be stable up to {shown:g}; "
@@ -125,6 +121,14 @@ def _warn_of_grid_reynolds(flow: Flow, speed: float) -> None:
             OutsideRangeWarning,
             stacklevel=4,
         )
+
+
+def _shown_stable(flow: Flow, rates: Rates | RatesByPlace) -> float:
+    moving = any(isinstance(face, NoSlip) and face.moves for face in flow.faces)
+    return min(
+        rates.grid_reynolds_at_moving_walls if moving else rates.grid_reynolds,
+        rates.grid_reynolds_at_bodies if flow.bodies else rates.grid_reynolds,
+    )
 
 
 @dataclass
