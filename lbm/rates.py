@@ -159,12 +159,12 @@ class Rates:
 
     @property
     def grid_reynolds_at_bodies(self) -> float:
-        """The same about a body: a sphere held in a stream of Re 300 ran at 10 cells (42) and diverged at 8 (52)."""
+        """The same about a body: a sphere held in a stream of Re 300 ran at 10 cells (42), diverged at 8 (52)."""
         return min(42.0, self.grid_reynolds)
 
     @property
     def grid_reynolds_at_moving_walls(self) -> float:
-        """The same at a moving wall: a cubic cavity of Re 1000 settles at 48 cells (21) and diverges at 24 (42)."""
+        """The same at a moving wall: a cubic cavity of Re 1000 settles at 48 cells (21), diverges at 24 (42)."""
         return min(21.0, self.grid_reynolds)
 
     def layers(self) -> tuple[Rates, ...]:

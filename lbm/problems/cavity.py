@@ -15,8 +15,8 @@ from lbm.simulation import Simulation
 LID_SPEED = 0.1
 """Cells a step."""
 UNSETTLED = 40.0
-"""Re of one cell from which on no rates are known with which the cube comes to rest: 24 cells at Re 1000 diverge or
-keep changing with all of them, 32 settle."""
+"""Re of one cell from which on no rates are known with which the cube settles: 24 cells at Re 1000 diverge or keep
+changing with all of them, 32 settle."""
 
 
 @dataclass(frozen=True)
