@@ -33,8 +33,8 @@ from lbm.spheres import Sphere, Spheres
 from restitution import datasets
 from restitution.files import write_whole
 
-RATES = ("quiet",)
-"""Far from walls "quiet" is what "quiet-by-place" is."""
+RATES = ("balanced",)
+"""What cases have far from walls."""
 UNSTEADY = 212.0
 """Reynolds number from which a wake has no axis: Natarajan & Acrivos, J. Fluid Mech. 254 (1993) 323."""
 CUT = 1.0
