@@ -195,6 +195,8 @@ def _show(known: dict[str, dict], rates: list[str], console: Console) -> None:
             for s in streams(name)
             if s.reynolds == re and s.part == 0 and "C_D" in known[s.name]
         }
+        if not {(COARSE, NARROW), (COARSE, WIDE)} <= own.keys():
+            continue  # the share of the box is not known where the coarsest grid diverges
         finest = max(d for d, width in own if width == NARROW)
         drag = own[finest, NARROW] * free_of_box(own[COARSE, NARROW], own[COARSE, WIDE])
         grids = [own.get((d, NARROW), math.nan) for d in (COARSE, MIDDLE, FINE)]

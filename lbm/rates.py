@@ -22,6 +22,8 @@ _COARSER = "lower the viscosity in lattice units (fewer cells or a lower lattice
 
 _FAST = 0.3
 """Slowest s_m with which flows of high grid Reynolds number were shown to be stable."""
+_SLOWER = 0.2
+"""(1/s_nu - 1/2)(1/s_q - 1/2) above which q is slower than two relaxation times have it (3/16)."""
 
 
 def _rate(viscosity: float, factor: float, name: str) -> float:
@@ -159,8 +161,14 @@ class Rates:
 
     @property
     def grid_reynolds_at_bodies(self) -> float:
-        """The same about a body: a sphere held in a stream of Re 300 ran at 10 cells (42), diverged at 8 (52)."""
-        return min(42.0, self.grid_reynolds)
+        """The same about a body, by a sphere held in a stream.
+
+        :meth:`quiet` ran at Re 300 and 10 cells (42 by the fastest flow) and diverged at 8 (52); :meth:`balanced`,
+        whose q is slower than two relaxation times have it, was quiet at Re 164 and 8 cells (29), noisy at Re 300
+        and 12 (35), and diverged at 10.
+        """
+        magic = (1 / self.nu - 0.5) * (1 / self.q - 0.5)
+        return min(42.0 if magic < _SLOWER else 29.0, self.grid_reynolds)
 
     @property
     def grid_reynolds_at_moving_walls(self) -> float:
