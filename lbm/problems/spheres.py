@@ -193,6 +193,15 @@ def drag_in_frame(
     return float(-(force[len(force) // 3 :] @ relative).mean() / np.linalg.norm(relative))
 
 
+def moved_over_held(
+    diameter: float, *, speed: float, viscosity: float, width: float, preset: Preset = RatesByPlace.balanced
+) -> float:
+    """Drag of a sphere moved through fluid at rest over that of one held in the equal stream: 1 (Galileo)."""
+    told = {"viscosity": viscosity, "width": width, "preset": preset}
+    moved = drag_in_frame(diameter, (speed, 0.0, 0.0), STILL, **told)
+    return moved / drag_in_frame(diameter, STILL, (-speed, 0.0, 0.0), **told)
+
+
 @dataclass(frozen=True)
 class Shear:
     """Of a sphere in shear flow: turning rate over half the shear rate, torque when held over 4 pi mu a^3 G."""
