@@ -6,6 +6,11 @@ Source: simulation by Biegert, Vowinckel & Meiburg, J. Comput. Phys. 340 (2017) 
 Petit, Phys. Fluids 14 (2002) 643, the 3 mm sphere.
 """
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pandas
+
 from restitution import datasets
 from restitution.validation import assert_trajectory, case_of, score
 
@@ -13,7 +18,7 @@ from restitution.validation import assert_trajectory, case_of, score
 def main():
     """The values of both by label."""
     case = case_of("gondret-st152")
-    track = datasets.load_track("biegert2017_st152")  # or Track.from_table(pandas.read_csv(...))
+    track = datasets.load_track("biegert2017_st152")
     # Its contact is stretched in time; its clock is zero at the end of the first, where the rebound begins.
     simulated = score("simulated", track, case, first_s=0.0)
     measured = score("measured", datasets.load_track(case.record), case)
@@ -24,6 +29,11 @@ def main():
     print(f"could not be filled: {', '.join(simulated.left_open)}")
     # In a test of your own solver: fails where a value is not the record's, a known shortfall held where it is.
     assert_trajectory(track, case.name, allow={"apex 2, mm": 0.2}, may_lack=simulated.left_open)
+    # A file will do, or columns; its header says what it holds: "t [ms],gap [mm]", "t/sqrt(d/g),gap/d", "t,v".
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "track.csv"
+        pandas.DataFrame({"t [ms]": 1e3 * track.time_s, "gap [mm]": 1e3 * track.value}).to_csv(file, index=False)
+        assert_trajectory(file, case.name, allow={"apex 2, mm": 0.2}, may_lack=simulated.left_open)
     return {"measured": measured.values, "simulated": simulated.values}
 
 

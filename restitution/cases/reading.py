@@ -9,7 +9,9 @@ of the base alone.
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -93,8 +95,26 @@ def find(given: str | Path) -> Path:
     if _is(path.is_dir):
         raise InputError(Defect("is a folder; name the case's TOML file", file=str(given)))
     near = difflib.get_close_matches(path.stem, known, n=3, cutoff=0.5)
-    hint = f"did you mean {' or '.join(near)}?" if near else "restitution simulate --list names those"
+    hint = f"did you mean {' or '.join(near)}?" if near else "'restitution cases list' names those"
+    if (case := of_record().get(plain(str(given)))) is not None:
+        hint = f"{case.record} is a record, its case is {case.name}"
     raise InputError(Defect(f"is no file and no shipped case; {hint}", file=str(given)))
+
+
+@cache
+def of_record() -> dict[str, Case]:
+    """The first shipped case with a contact of each record, by the names a record goes by (:func:`plain`)."""
+    known: dict[str, Case] = {}
+    for case in map(read_case, names()):
+        if case.record and case.contact is not None:
+            for short in (case.record, re.sub(r"(?<=[a-z])\d{4}_", "_", case.record)):
+                known.setdefault(plain(short), case)
+    return known
+
+
+def plain(name: str) -> str:
+    """A name in lower case, dashes for strokes."""
+    return name.lower().replace("_", "-")
 
 
 def _content(path: Path, depth: int = 0) -> dict[str, Any]:

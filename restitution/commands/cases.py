@@ -46,7 +46,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def _add_case(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
+    parser.add_argument(
+        "case", metavar="CASE", help="a TOML file, the name of a shipped case, or of a record that has one"
+    )
 
 
 def run_list(_: argparse.Namespace) -> None:
@@ -67,11 +69,25 @@ def run_list(_: argparse.Namespace) -> None:
 
 def run_show(args: argparse.Namespace) -> None:
     """Print what a case says, in SI, in dimensionless numbers, and as the lattice is told."""
-    from restitution.cases.reading import read_case
-
-    case = read_case(args.case)
+    case = _case(args.case)
     doubt_aside(case.conditions, args.case)
     show_facts([*_conditions(case), *_numbers(case), *_lattice(case)])
+
+
+def _case(given: str) -> Case:
+    """The case of a file or a name; that of a record is named on the standard error."""
+    from pathlib import Path
+
+    from restitution.cases.reading import names, of_record, plain, read_case
+
+    if not Path(given).is_file() and given not in names():
+        known = {plain(name): name for name in names()}
+        case = of_record().get(plain(given))
+        if case is not None and plain(given) not in known:
+            print(f"{case.record} is a record; its case is {case.name}", file=sys.stderr)  # noqa: T201
+            return case
+        given = known.get(plain(given), given)
+    return read_case(given)
 
 
 def _conditions(case: Case) -> list[tuple[str, str]]:
@@ -120,10 +136,15 @@ def _lattice(case: Case) -> list[tuple[str, str]]:
     if case.numerics is None or case.reference_speed is None:
         return [("lattice", "none: no [numerics] or reference speed")]
     import math
+    import warnings
 
+    from restitution.cases.reading import names
     from restitution.runs.setup import fall_time, set_up
 
-    setup = set_up(case)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        setup = set_up(case)
+    advice = [] if case.name in names() else [("doubt", f"{w.message}: it runs, less exactly") for w in told]
     flow = setup.flow
     whole = "a quarter of the box" if setup.mirrors else "the whole box"
     end = case.run.duration if case.run.after_contact is None else fall_time(case) + case.run.after_contact
@@ -136,6 +157,7 @@ def _lattice(case: Case) -> list[tuple[str, str]]:
         ("grid Re", f"{flow.grid_reynolds:.3g}"),
         ("rates", case.numerics.rates),
         ("work", f"about {steps:.2g} steps, {steps * cells:.2g} cell updates"),
+        *advice,
     ]
 
 
@@ -143,7 +165,6 @@ def run_export(args: argparse.Namespace) -> None:
     """Print or write the input of another solver."""
     from pathlib import Path
 
-    from restitution.cases.reading import read_case
     from restitution.errors import Defect, InputError
     from restitution.export.solvers import case_file
     from restitution.files import write_whole
@@ -151,11 +172,12 @@ def run_export(args: argparse.Namespace) -> None:
     options.check_output("--out", args.out, [args.case])
     if args.out and Path(args.out).exists() and not args.force:
         raise InputError(Defect("exists; --force replaces it", file=args.out, field="--out"))
-    case = read_case(args.case)
-    doubt_aside(case.conditions, args.case)
-    text = case_file(args.to, case, args.case)
+    case = _case(args.case)
+    given = args.case if Path(args.case).is_file() else case.name
+    doubt_aside(case.conditions, given)
+    text = case_file(args.to, case, given)
     if args.out is None:
         sys.stdout.write(text)
     else:
         write_whole(args.out, text)
-        show(f"{args.out}: input of {args.to} for {args.case}")
+        show(f"{args.out}: input of {args.to} for {given}")

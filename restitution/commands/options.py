@@ -25,10 +25,16 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_track(parser: argparse.ArgumentParser) -> None:
-    """The options that say what the numbers of a track mean."""
+def add_track(parser: argparse.ArgumentParser, several: bool = False) -> None:
+    """The options that say what the numbers of a track mean; ``several``: ``--settings`` takes one file each."""
     group = parser.add_argument_group("what the numbers of a track mean, where its file does not say it")
-    group.add_argument("--settings", metavar="FILE", help="all of this in a TOML file; options go before it")
+    if several:
+        group.add_argument(
+            "--settings", nargs="+", metavar="FILE", help="all of this in a TOML file, one for all trajectories "
+            "or one each in their order; options go before it",
+        )  # fmt: skip
+    else:
+        group.add_argument("--settings", metavar="FILE", help="all of this in a TOML file; options go before it")
     group.add_argument("--unit", metavar="U", help="of positions: m, mm, px, 0.3mm, d; of velocities also mm/s")
     group.add_argument("--time-unit", metavar="U", help="s, ms, frame, 0.5ms, sqrt(d/g)")
     group.add_argument("--fps", type=number, metavar="N", help="frames a second, of the camera")
@@ -60,16 +66,24 @@ def check_track_columns(columns: Iterable[tuple[str, str]]) -> None:
 
 def settings_of(args: argparse.Namespace) -> Settings:
     """What the numbers of tracks mean: the options, and the settings file where they say nothing."""
+    from restitution.foreign.settings import read_settings
+
+    given = stated_by(args)
+    return given.over(read_settings(args.settings)) if args.settings else given
+
+
+def stated_by(args: argparse.Namespace) -> Settings:
+    """What the options say of the numbers of tracks."""
     import math
 
     from restitution.errors import Defect, InputError
-    from restitution.foreign.settings import of_options, read_settings
+    from restitution.foreign.settings import of_options
 
     if args.fps is not None and not 0 < args.fps < math.inf:
         raise InputError(Defect("must be positive and finite", field="--fps", value=f"{args.fps:g}"))
     given_columns = once("--column", args.column)
     columns = {_TRACK_COLUMNS[name]: own for name, own in given_columns.items() if name in _TRACK_COLUMNS}
-    given = of_options(
+    return of_options(
         unit=args.unit,
         time_unit=args.time_unit,
         frames_per_second=args.fps,
@@ -80,7 +94,6 @@ def settings_of(args: argparse.Namespace) -> Settings:
         particle=args.particle,
         **columns,
     )
-    return given.over(read_settings(args.settings)) if args.settings else given
 
 
 def _wall(text: str) -> float | str:

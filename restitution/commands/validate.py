@@ -45,7 +45,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--failed", action="store_true", help="the rows that did not pass in the folder's scorecard"
     )
     parser.add_argument("--list", action="store_true", help="name the rows and stop")
-    parser.add_argument("--out", metavar="FOLDER", default="validation", help="where to write (validation)")
+    parser.add_argument(
+        "--out",
+        metavar="FOLDER",
+        default="validation",
+        help="where index.html and scorecard.json go; "
+        "of --trajectory index.html, figure.svg, figure.png, scores.json (validation)",
+    )
     parser.add_argument("--resume", action="store_true", help="go on where a stopped run of the same program was")
     parser.add_argument("--strict", action="store_true", help="a known miss of the truth fails too")
     parser.add_argument(
@@ -88,6 +94,7 @@ def run(args: argparse.Namespace) -> int:
         show("every row of that scorecard passed")
         return 0
     spread = _spread(args, path, rows)
+    folder.mkdir(parents=True, exist_ok=True)
     results = _measured(args, rows, baseline, folder)
     judged = [Judged.of(row, results[name], baseline and baseline.held(row)) for name, row in rows.items()]
     card = Scorecard(
@@ -120,7 +127,6 @@ def _folder(given: str) -> Path:
     if not given:
         raise InputError(Defect("names no folder", field="--out"))
     check_folder(given)
-    Path(given).mkdir(parents=True, exist_ok=True)
     return Path(given)
 
 
@@ -132,6 +138,9 @@ def _baseline(args: argparse.Namespace) -> tuple[Path, Baseline | None]:
     path = Path(args.baseline or (shipped(BASELINE) if args.bless is None else FOLDER / BASELINE))
     if path.is_file():
         return path, read_baseline(path)
+    if path.is_dir():
+        rule = f"is a folder: name the file in it, such as {path / BASELINE}"
+        raise InputError(Defect(rule, file=str(path), field="--baseline"))
     if args.baseline and args.bless is None:
         raise InputError(Defect("is not there", file=args.baseline, field="--baseline"))
     return path, None

@@ -10,6 +10,8 @@ from restitution.commands import options
 from restitution.commands.console import show, show_rows
 
 if TYPE_CHECKING:
+    from restitution.cases.case import Case
+    from restitution.tracks import Track
     from restitution.validation.trajectory import Scored
 
 
@@ -18,7 +20,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("a trajectory of another solver")
     group.add_argument(
         "--trajectory", nargs="+", metavar="FILE", help="score these against the record of --case: time and gap, "
-        "height or velocity, in any unit (--unit, --time-unit); several stand side by side",
+        "height or velocity, in any unit (--unit, --time-unit; a header such as t [s], gap/d or v says it); "
+        "several stand side by side, what a header says going before these options",
     )  # fmt: skip
     group.add_argument("--case", metavar="CASE", help="a record or a shipped case, such as gondret-st152")
     group.add_argument("--name", nargs="+", metavar="NAME", help="what the trajectories are called (their files)")
@@ -32,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "its end",
     )  # fmt: skip
     options.add_columns(parser)
-    options.add_track(parser)
+    options.add_track(parser, several=True)
 
 
 def check(args: argparse.Namespace) -> None:
@@ -59,7 +62,8 @@ def run(args: argparse.Namespace, folder: Path) -> int:
     from restitution.errors import Defect, InputError
     from restitution.files import write_folder
     from restitution.validation import trajectory_page
-    from restitution.validation.trajectory import case_of
+    from restitution.validation.rebound import Errors
+    from restitution.validation.trajectory import case_of, score
     from restitution.validation.verdict import FAILED, NOT_EVALUATED, Verdict
 
     if args.case is None:
@@ -72,8 +76,15 @@ def run(args: argparse.Namespace, folder: Path) -> int:
     if len(named) != len(args.trajectory):
         rule = f"names {len(named)} of {len(args.trajectory)} trajectories: one each"
         raise InputError(Defect(rule, field="--name"))
+    if twice := [name for name in named if named.count(name) > 1]:
+        what = "--name" if args.name else "--trajectory"
+        raise InputError(Defect("is given twice: they could not be told apart", field=what, value=twice[0]))
     case = case_of(args.case)
-    scored = [_scored(args, file, name, case) for file, name in zip(args.trajectory, named, strict=True)]
+    errors = Errors(grid=args.grid_error)
+    scored = [
+        score(name, track, case, errors, args.first_contact, notes)
+        for name, (track, notes) in zip(named, _tracks(args, case), strict=True)
+    ]
     contents = trajectory_page.files(scored)
     write_folder(folder, contents)
     _show(scored)
@@ -89,23 +100,31 @@ def _names(files: list[str]) -> list[str]:
     return stems if len(set(stems)) == len(stems) else [str(Path(file).with_suffix("")) for file in files]
 
 
-def _scored(args: argparse.Namespace, file: str, name: str, case) -> Scored:
-    from restitution import datasets
+def _tracks(args: argparse.Namespace, case: Case) -> list[tuple[Track, tuple[str, ...]]]:
+    """The tracks with notes on how they were read, which is printed."""
     from restitution.errors import Defect, InputError
-    from restitution.foreign import read_foreign, read_track
-    from restitution.validation.rebound import Errors
-    from restitution.validation.trajectory import score
+    from restitution.foreign import read_settings
+    from restitution.validation.trajectory_file import read_trajectory
 
-    errors = Errors(grid=args.grid_error)
-    if not Path(file).exists():
-        if file not in datasets.names():
-            raise InputError(Defect("does not exist, and no shipped record has this name", file=file))
-        return score(name, datasets.load_track(file), case, errors, args.first_contact)
     options.check_track_columns(args.column)
-    settings = options.settings_of(args)
-    found = read_track(read_foreign(file, settings.decimal), settings, case.conditions)
-    show(f"{file}: {found.reading}" if found.reading else f"{file}: as it stands")
-    return score(name, found.track(None), case, errors, args.first_contact, found.notes)
+    given, files, several = options.stated_by(args), args.settings or [], len(args.trajectory) > 1
+    if len(files) > 1 and len(files) != len(args.trajectory):
+        rule = f"names {len(files)} files for {len(args.trajectory)} trajectories: one for all, or one each"
+        raise InputError(Defect(rule, field="--settings"))
+    own = [read_settings(file) for file in files]
+    shared = given if len(own) != 1 else given.over(own[0])
+    tracks = []
+    for k, file in enumerate(args.trajectory):
+        if len(own) > 1:
+            found = read_trajectory(file, case.conditions, own[k], shared)
+        else:
+            found = read_trajectory(
+                file, case.conditions, None if several else shared, shared if several else None
+            )
+        if found.reading:
+            show(f"{file}: {found.reading}")
+        tracks.append((found.track, found.notes))
+    return tracks
 
 
 def _show(scored: list[Scored]) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from restitution.errors import Defect, InputError
 from restitution.foreign.heading import FRAMES
 from restitution.foreign.number_text import as_number
-from restitution.foreign.programs import POSITIONS, TIMES
+from restitution.foreign.programs import POSITIONS, TIMES, VELOCITIES
 from restitution.foreign.settings import Settings, Units
 from restitution.foreign.table import ROW, ForeignTable
 from restitution.units import SPEED, UnitError, quantity
@@ -16,13 +18,20 @@ _SAME_CLOCK = 0.02
 """Part by which frames a second may differ from the rows a second of a file that has times of its own."""
 _MOST_NAMED = 30
 """Columns that a message names."""
+_SWAPPED = 0.1
+"""Part of the rows whose times go back from which on it is no matter of a few wrong rows."""
 _COUNTED = [name for name, unit in FRAMES.items() if unit == "frame" and name != "fr"]
 _FRAMES = ("slice", "image", "bild", *_COUNTED)
 
 
-def what_is_needed(table: ForeignTable) -> Defect:
-    """That the columns of a track are not known, with the options that name them, guessed from their names."""
+def what_is_needed(table: ForeignTable, given: Settings | None = None) -> Defect:
+    """That the columns of a track are not known, with the options that name them, guessed from their names.
+
+    What is ``given`` already is not asked for again.
+    """
+    given = given or Settings()
     time, value = _guessed(table)
+    time, value = given.time or time, given.position or given.velocity or value
     header = ", ".join(map(_listed, table.header[:_MOST_NAMED])) + (
         " ..." if len(table.header) > _MOST_NAMED else ""
     )
@@ -30,25 +39,39 @@ def what_is_needed(table: ForeignTable) -> Defect:
         columns = f"the header ({header}) does not tell which columns are time and position"
     else:
         columns = f"names no columns; they are {header}"
-    if value is not None and _is_speed(table.units.get(value)):
-        # An own name each: only a position has a point and may be in pixels.
-        also = [] if time is None or table.units.get(time) else ["--time-unit s or what it is in"]
-        rest = f", with {also[0]}" if also else ""
-        example = f"--column time_s={_quoted(time or 'NAME')} --column velocity_m_s={_quoted(value)}"
-        return Defect(f"{columns}: {example} (or gap_m=NAME){rest}", file=table.file)
-    example = f"--column time_s={_quoted(time or 'NAME')} --column gap_m={_quoted(value or 'NAME')}"
+    speed = given.velocity is not None or (given.position is None and _is_velocity(table, value))
+    asked = [] if given.time else [f"--column time_s={_quoted(time or 'NAME')}"]
+    if not given.position and not given.velocity:
+        name, other = ("velocity_m_s", "gap_m") if speed else ("gap_m", "velocity_m_s")
+        asked.append(f"--column {name}={_quoted(value or 'NAME')} (or {other}=NAME)")
     also = []
     if time is None and table.named and len(table.header) != 2:
         also.append(f"--column time_s={ROW} --time-unit frame --fps N where each row is a frame")
-    elif not table.units.get(time or ""):
+    elif given.time_unit is None and not table.units.get(time or ""):
         frames = time is not None and any(word in time.lower() for word in _FRAMES)
-        also.append("--time-unit frame --fps N" if frames else "--time-unit s or what it is in")
-    if not table.units.get(value or ""):
-        also.append(
-            "--unit m or what it is in (rows of an image: --unit px --pixel LENGTH --wall ROW --direction down)"
-        )
-    also.append("--point centre where it is the height of the centre")
-    return Defect(f"{columns}: {example} (or velocity_m_s=NAME), with {', '.join(also)}", file=table.file)
+        fps = "" if given.frames_per_second else " --fps N"
+        also.append(f"--time-unit frame{fps}" if frames else "--time-unit s or what it is in")
+    if given.unit is None and not table.units.get(value or ""):
+        # Only a position has a point and may be in pixels.
+        image = " (rows of an image: --unit px --pixel LENGTH --wall ROW --direction down)"
+        also.append("--unit m/s or what it is in" if speed else f"--unit m or what it is in{image}")
+    if not speed and given.point is None:
+        also.append("--point centre where it is the height of the centre")
+    rest = f", with {', '.join(also)}" if also else ""
+    return Defect(f"{columns}: {' '.join(asked)}{rest}", file=table.file)
+
+
+def check_order(table: ForeignTable, time: str, value: str) -> None:
+    """Refuse a table whose times go up and down while its values only grow: its columns are likely swapped."""
+    i, k = table.header.index(time), table.header.index(value)
+    rows = [cells for _, cells in table.rows if len(cells) == len(table.header)]
+    if not all(earlier < later for earlier, later in pairwise(as_number(cells[k]) for cells in rows)):
+        return
+    times = [as_number(cells[i]) for cells in rows]
+    back = sum(later <= earlier for earlier, later in pairwise(times))
+    if back > _SWAPPED * len(times):
+        rule = f"goes back in {back} of {len(times)} rows, and {value} never does: are the two columns swapped?"
+        raise InputError(Defect(rule, file=table.file, field=time))
 
 
 def _guessed(table: ForeignTable) -> tuple[str | None, str | None]:
@@ -61,10 +84,18 @@ def _guessed(table: ForeignTable) -> tuple[str | None, str | None]:
     if value is None:  # "Position (m) Run #1"
         starts = tuple(f"{name} " for name in POSITIONS if len(name) > 3)
         value = next((own for own in table.header if own.lower().startswith(starts) and _moves(table, own)), None)
+    value = value or next((own for name in VELOCITIES if (own := table.column(name)) and own != time), None)
     if len(table.header) == 2:
         time = time or next(name for name in table.header if name != value)
         value = value or next(name for name in table.header if name != time)
     return time, value
+
+
+def _is_velocity(table: ForeignTable, value: str | None) -> bool:
+    """Whether a column is a velocity by its unit, or by its name."""
+    if value is None or _is_speed(table.units.get(value)):
+        return value is not None
+    return value not in table.units and any(table.column(name) == value for name in VELOCITIES)
 
 
 def _is_speed(unit: str | None) -> bool:

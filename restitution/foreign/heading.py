@@ -28,10 +28,11 @@ FRAMES = {
     "画素": "px", "ピクセル": "px", "픽셀": "px",
 }  # fmt: skip
 """Units that are none of SI, or have other names there."""
-_LATTICE = {"d": "d"}
+_LATTICE = ("d", "sqrt(d/g)")
+"""Units of the sphere's own."""
 _SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>s|ms|us|m|mm|cm|um|px)")
-_BRACKETS = re.compile(r"(?P<name>.*?)\s*[(\[](?P<unit>[^()\[\]]+)[)\]](?P<run>[^()\[\]]*)")
-_SLASH = re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>[^/]+)")
+_BRACKETS = re.compile(r"(?P<name>.*?)\s*[(\[](?P<unit>[^()\[\]]+|sqrt\(d/g\))[)\]](?P<run>[^()\[\]]*)")
+_SLASH = re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>[^/]+|sqrt\(d/g\))")
 _COMMA = re.compile(r"(?P<name>[^,]+?)\s*[,、]\s*(?P<unit>[^,]+)")
 
 
@@ -249,7 +250,10 @@ def _is_quantity(text: str) -> bool:
 
 def unit_of(text: str) -> str:
     """A unit without brackets and full stop, by the name that it has here."""
-    bare = unicodedata.normalize("NFKC", text).strip().strip("()[]").strip().removesuffix(".")
+    bare = unicodedata.normalize("NFKC", text).strip()
+    if bare in _LATTICE:
+        return bare
+    bare = bare.strip("()[]").strip().removesuffix(".")
     if not bare.isascii() and not _is_quantity(bare):  # two letters do not tell the code page of a file
         bare = next((known for known in mistaken(bare) if not known.isascii() and _is_quantity(known)), bare)
     return FRAMES.get(bare.lower(), bare)

@@ -153,6 +153,12 @@ POSITIONS = (
     "зазор", "высота", "координата", "положение", "у", "ύψος", "高度", "高さ", "位置", "位移",
     "変位", "间隙", "높이",
 )  # fmt: skip
+CLOCKS = (
+    "t", "time", "zeit", "temps", "tempo", "tiempo", "czas", "время", "час", "χρόνος", "时间", "時間", "시간",
+)  # fmt: skip
+GAPS = ("gap", "abstand", "spalt", "зазор", "间隙", "間隙")
+VELOCITIES = ("v", "velocity", "geschwindigkeit", "vitesse", "velocidad", "velocità", "скорость", "速度", "속도")
+"""Names that leave no doubt what a column is: a time, a gap of the lowest point, a velocity along the normal."""
 PARTICLES = (
     "particle", "particle_id", "track_id", "track", "trackid", "track id", "trajectory", "object_id", "id",
 )  # fmt: skip

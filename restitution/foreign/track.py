@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from restitution import datasets
 from restitution.conditions import LARGEST, SMALLEST, Conditions
 from restitution.errors import Defect, InputError
-from restitution.foreign.asking import overridden, what_is_needed, without_use
+from restitution.foreign.asking import check_order, overridden, what_is_needed, without_use
 from restitution.foreign.number_text import as_number
 from restitution.foreign.settings import Settings, Units
 from restitution.foreign.table import ROW, ForeignTable, in_words, lost_rows
@@ -129,7 +129,7 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
         table = table.with_rows()
     columns = columns_of(table, settings)
     if columns is None:
-        raise InputError(what_is_needed(table))
+        raise InputError(what_is_needed(table, settings))
     notes = overridden(table, settings, columns.time, columns.value)
     settings = _completed(table, settings, columns)
     notes = (*notes, *without_use(table, settings, columns.time, columns.value))
@@ -141,6 +141,7 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
         else units.speed(settings.unit or "m", time_unit)
     )
     kept, lost = _without_lost(table, columns)
+    check_order(kept, columns.time, columns.value)
     names = {"time_s": columns.time, COLUMNS[columns.quantity]: columns.value}
     scale = {"time_s": time_unit, COLUMNS[columns.quantity]: unit}
     frames = read_table(kept.text(), datasets.schema(_SCHEMAS[columns.quantity]), names, scale)
@@ -177,7 +178,7 @@ def _of_particle(table: ForeignTable, settings: Settings) -> ForeignTable:
         try:
             columns = columns_of(one, settings)
             if columns is None:
-                raise InputError(what_is_needed(one))
+                raise InputError(what_is_needed(one, settings))
             _completed(one, settings, columns)
         except InputError as more:
             also = "; ".join(defect.rule for defect in more.defects)

@@ -6,8 +6,9 @@ Read :mod:`~restitution.validation.row` (what a row is), :mod:`~restitution.vali
 :mod:`~restitution.validation.baseline`, :mod:`~restitution.validation.scorecard`,
 :mod:`~restitution.validation.page` with :mod:`~restitution.validation.plot`.
 
-:mod:`~restitution.validation.trajectory` scores a trajectory of somebody else's solver,
-:mod:`~restitution.validation.trajectory_page` shows several; :func:`assert_trajectory` is for tests.
+:mod:`~restitution.validation.trajectory` scores a trajectory of somebody else's solver, as
+:mod:`~restitution.validation.trajectory_file` reads it, :mod:`~restitution.validation.trajectory_page` shows
+several; :func:`assert_trajectory` is for tests.
 """
 
 from restitution.validation.trajectory import assert_trajectory, case_of, score

@@ -13,31 +13,34 @@ from __future__ import annotations
 
 import difflib
 import math
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution import datasets
 from restitution.cases.case import Case
-from restitution.cases.reading import names, read_case
+from restitution.cases.reading import names, of_record, plain, read_case
 from restitution.errors import Defect, InputError
 from restitution.impacts.bounces import Bounces, filmed
 from restitution.impacts.find import Impacts, find_impacts
 from restitution.impacts.shipped import impacts_of
 from restitution.stokes import Speed
 from restitution.tracks import Track, contacts
-from restitution.validation.rebound import Errors, quantities, references
+from restitution.validation.rebound import Errors, quantities, record_bounces, references
 from restitution.validation.row import Kind, Reference, Row, Values, near
 from restitution.validation.scorecard import Judged, Result
+from restitution.validation.trajectory_file import read_trajectory
 from restitution.validation.verdict import Verdict
 
 APPROACH = "approach, m/s"
 ANOTHER = 1.5
 """Ratio of approach speeds from which on it cannot be the same impact: a unit is wrong, or the case."""
+_LASTING = 3.0
+"""Ratio of first flights from which on it cannot be the same gravity: at most ``ANOTHER``, and e is at most 1."""
 _AT_REST = 0.02
 """Diameters from which on the level of a trajectory is told: above noise, deeper than stiff contacts go."""
 _FINER = 4.0
@@ -78,9 +81,9 @@ def case_of(given: str) -> Case:
     Raises :class:`InputError` offering names.
     """
     known = _cases()
-    if _plain(given) in known:
-        return known[_plain(given)]
-    near_names = difflib.get_close_matches(_plain(given), known, n=3, cutoff=0.4) or list(known)[:3]
+    if plain(given) in known:
+        return known[plain(given)]
+    near_names = difflib.get_close_matches(plain(given), known, n=3, cutoff=0.4) or list(known)[:3]
     rule = f"is no record with a rebound, nor a case of one; did you mean {' or '.join(near_names)}?"
     raise InputError(Defect(rule, field="--case", value=given))
 
@@ -88,17 +91,8 @@ def case_of(given: str) -> Case:
 @cache
 def _cases() -> dict[str, Case]:
     """Cases with a record and a contact, by every name they go by."""
-    known: dict[str, Case] = {}
-    for case in map(read_case, names()):
-        if case.record and case.contact is not None:
-            known[_plain(case.name)] = case
-            for short in (case.record, re.sub(r"(?<=[a-z])\d{4}_", "_", case.record)):
-                known.setdefault(_plain(short), case)
-    return known
-
-
-def _plain(name: str) -> str:
-    return name.lower().replace("_", "-")
+    cases = [case for case in map(read_case, names()) if case.record and case.contact is not None]
+    return of_record() | {plain(case.name): case for case in cases}
 
 
 def score(
@@ -139,6 +133,7 @@ def score(
         rule = f"is outside the trajectory, {track.time_s[0]:g} to {track.time_s[-1]:g} s"
         raise InputError(Defect(rule, file=name, field="--first-contact", value=f"{first_s:g} s"))
     bounces = filmed(track, case.conditions, first_s)
+    _check_clock(bounces, case, name)
     values = _values(bounces, track, found, case)
     row = _row(name, case, errors)
     labels = {r.label for r in row.truth()}
@@ -194,6 +189,17 @@ def _approach(found: Impacts, case: Case, name: str) -> float:
     return float(speed)
 
 
+def _check_clock(bounces: Bounces, case: Case, name: str) -> None:
+    """Refuse a flight that gravity does not make: units of length and time that are both wrong keep a speed."""
+    theirs = record_bounces(case.record).intervals_s[0]
+    if len(bounces.intervals_s) and bounces.intervals_s[0] > _LASTING * theirs:
+        rule = (
+            f"flies {bounces.intervals_s[0]:.3g} s between its first two contacts, where {case.record} has "
+            f"{theirs:.3g} s at the same speed: wrong units of length and time (--unit, --time-unit)"
+        )
+        raise InputError(Defect(rule, file=name))
+
+
 def _values(bounces: Bounces, track: Track, found: Impacts, case: Case) -> Values:
     """e_eff as the record's camera would have it, or, of a track about as coarse, by its own frames."""
     values = dict(quantities(bounces, case.record, case))
@@ -230,7 +236,7 @@ def _sums(time: NDArray, value: NDArray) -> NDArray:
 
 
 def assert_trajectory(
-    track: Track | Mapping[str, Sequence[float]],
+    track: Track | str | Path | Mapping[str, Sequence[float]],
     case: str,
     *,
     name: str = "trajectory",
@@ -242,7 +248,9 @@ def assert_trajectory(
 
     Parameters
     ----------
-    track : a :class:`restitution.tracks.Track`, or columns ``time_s`` and ``gap_m`` (or ``velocity_m_s``), in SI.
+    track : a :class:`restitution.tracks.Track`; or a file of any form, whose header says what it holds, as
+        ``t [s],gap [mm]`` or ``t/sqrt(d/g),gap/d`` does; or columns ``time_s`` and ``gap_m`` (or
+        ``velocity_m_s``), in SI.
     case : name of a record or a shipped case, such as "gondret-st152".
     name : what the message calls it.
     grid_error : relative error of a first apex by the solver's own grid, from its own convergence study.
@@ -261,10 +269,14 @@ def assert_trajectory(
     """
     import pandas as pd
 
-    if not isinstance(track, Track):
+    held_against, notes = case_of(case), ()
+    if isinstance(track, str | Path):
+        found = read_trajectory(track, held_against.conditions)
+        track, notes = found.track, found.notes
+    elif not isinstance(track, Track):
         track = Track.from_table(pd.DataFrame(track))
     allowed = dict(allow or {})
-    scored = score(name, track, case_of(case), Errors(grid=grid_error))
+    scored = score(name, track, held_against, Errors(grid=grid_error), notes=notes)
     truth = {r.label: r for r in scored.judged.row.truth()}
     for field, labels in (("allow", allowed), ("may_lack", may_lack)):
         unknown = [label for label in labels if label not in truth]

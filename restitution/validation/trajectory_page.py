@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from restitution import __version__, datasets
 from restitution.bounce.agreement import UNTIL
+from restitution.impacts.bounces import Bounces
 from restitution.report.drawing import Drawing, as_text, save, style
+from restitution.report.fig2.scores import BOUNCES
 from restitution.report.page import percent
 from restitution.report.page import render as render_page
 from restitution.validation.page import shown
@@ -25,7 +27,11 @@ LINES = ("-", "--", "-.", ":")
 """Of one trajectory after the other; from the fifth on they are told apart by their greys too."""
 _GREYS = ("black", "#777777")
 _BEFORE = -2.0
-"""Beginning of the figure in t* before the first contact."""
+"""Earliest beginning of the figure in t* before the first contact."""
+_BESIDE = 0.4
+"""Of it, beside what is shown."""
+_LONGER = 2.0
+"""Times the record's bounces up to which those of a trajectory are shown."""
 
 
 def files(scored: Sequence[Scored]) -> dict[str, str | bytes]:
@@ -91,33 +97,52 @@ def _draw(scored: Sequence[Scored]) -> Drawing:
 
     with style():
         figure = Figure(figsize=(7.5, 4.2), layout="constrained")
-        _fill(figure.subplots(), scored)
+        fill(figure.subplots(), scored)
         return save(figure)
 
 
-def _fill(ax: Axes, scored: Sequence[Scored]) -> None:
+def fill(ax: Axes, scored: Sequence[Scored]) -> None:
+    """Frames of the record and lines of the trajectories, as far as they are scored."""
     case = scored[0].case
     d, unit = case.sphere.diameter, math.sqrt(case.sphere.diameter / case.gravity)
     record, error = record_bounces(case.record), datasets.resource(case.record).digitisation_error
     sigma = error.sigma.get("gap_m", 0.0) / d
+    begin, end = _span(record, [one.bounces for one in scored], unit)
     t = (record.time_s - record.contacts_s[0]) / unit
-    near = (t >= _BEFORE) & (t <= UNTIL)
+    near = (t >= begin) & (t <= end)
     ax.errorbar(
         t[near], record.gap_m[near] / d, yerr=sigma, fmt="s", ms=4, mfc="white", mec="black", ecolor="black",
         elinewidth=0.8, label=f"measured: {case.record}", zorder=1,
     )  # fmt: skip
     for k, one in enumerate(scored):
         t = (one.bounces.time_s - one.bounces.contacts_s[0]) / unit
-        near = (t >= _BEFORE) & (t <= UNTIL)
+        near = (t >= begin) & (t <= end)
         ax.plot(
             t[near], one.bounces.gap_m[near] / d, LINES[k % len(LINES)],
             color=_GREYS[k // len(LINES) % len(_GREYS)], label=as_text(one.name), zorder=2 + k,
         )  # fmt: skip
     ax.set_xlabel(r"time after the first contact, $t\,\sqrt{g/d}$  [-]")
     ax.set_ylabel(r"gap, $h/d$  [-]")
-    ax.set_xlim(_BEFORE, UNTIL)
-    ax.set_ylim(bottom=0, top=1.25 * max(record.apexes_m) / d)
+    ax.set_xlim(begin, end)
+    highest = max(record.apexes_m)
+    apexes = [apex for one in scored for apex in one.bounces.apexes_m if apex < _LONGER * highest]
+    ax.set_ylim(bottom=0, top=1.25 * max(highest, *apexes) / d)
     ax.legend(loc="upper right", fontsize=8.5)
+
+
+def _span(record: Bounces, flown: Sequence[Bounces], unit: float) -> tuple[float, float]:
+    """From the approach to the end of the last flight that is scored, of whichever takes longer, in t*."""
+    theirs = [_last(one) / unit for one in flown]
+    end = max(UNTIL, _last(record) / unit)
+    end = min(max(end, *theirs), _LONGER * end) + _BESIDE
+    first = min((one.time_s[0] - one.contacts_s[0]) / unit for one in (record, *flown))
+    return max(_BEFORE, first - _BESIDE), end
+
+
+def _last(found: Bounces) -> float:
+    """Seconds from the first contact to the end of the last flight that is scored, or of the trajectory."""
+    ends = found.contacts_s[BOUNCES] if len(found.contacts_s) > BOUNCES else found.time_s[-1]
+    return float(ends - found.contacts_s[0])
 
 
 def verdict_of(scored: Sequence[Scored]) -> Verdict:

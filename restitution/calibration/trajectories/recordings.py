@@ -96,7 +96,7 @@ def read_recording(path: str, how: Reading) -> Recording:
     if Path(path).exists():
         table = read_foreign(path, how.track.decimal)
         if not is_track(table, how.settings):
-            raise InputError(what_is_needed(table))
+            raise InputError(what_is_needed(table, how.settings))
         track, conditions, notes = track_of(table, how)
         digest = hashlib.sha256(read_bytes(path)).hexdigest()
         record = recording(path, track, conditions, digest, stated_release(how, conditions))

@@ -37,3 +37,31 @@ def test_a_case_cannot_choose_where_results_go(name, command, tmp_path, monkeypa
     assert said.startswith("error: case.toml: name")
     assert "plain name" in said
     assert [p.name for p in tmp_path.rglob("*")] == ["in", "case.toml"]
+
+
+def test_a_record_stands_for_its_case(capsys):
+    """By any name that `validate --case` takes; what it means is said apart from the answer."""
+    answers = set()
+    for asked in ("gondret_st152_10", "gondret-st152", "gondret2002_st152"):
+        assert main(["cases", "show", asked]) == 0
+        out, err = capsys.readouterr()
+        answers.add(out)
+        assert ("gondret_st152_10" in err) == (asked != "gondret_st152_10")
+        assert main(["cases", "export", asked, "--to", "lethe"]) == 0
+        answers.add(capsys.readouterr().out)
+    assert len(answers) == 2
+
+
+def test_what_is_no_case_says_where_cases_are_named(capsys):
+    assert main(["cases", "show", "nosuch"]) == 2
+    assert "cases list" in capsys.readouterr().err
+    assert main(["simulate", "gondret-st152"]) == 2
+    assert "gondret_st152_10" in capsys.readouterr().err
+
+
+def test_an_inexact_lattice_of_ones_own_is_doubted_beside_its_numbers(tmp_path, capsys):
+    (tmp_path / "mine.toml").write_text('base = "gondret_st152_10"\n')
+    assert main(["cases", "show", str(tmp_path / "mine.toml")]) == 0
+    out, err = capsys.readouterr()
+    assert "relaxation time below" in out
+    assert err == ""

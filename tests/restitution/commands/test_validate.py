@@ -54,6 +54,7 @@ def test_a_kept_run_that_is_not_there_is_not_evaluated(folder, tmp_path):
         (["--only", *CHEAP, "--failed"], "--failed"),
         (["--failed"], "scorecard.json"),
         (["--only", *CHEAP, "--baseline", "nowhere.json"], "nowhere.json"),
+        (["--only", *CHEAP, "--baseline", str(BASELINE.parent)], "folder"),
         (["--only", *CHEAP, "--out", ""], "--out"),
     ],
 )
@@ -63,7 +64,7 @@ def test_what_cannot_be_used_is_one_line_and_status_2(folder, capsys, options, n
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
     assert named in lines[0]
-    assert not (folder / "scorecard.json").exists()
+    assert not folder.exists()
 
 
 def test_nothing_is_blessed_without_a_measured_spread(folder, tmp_path, capsys):

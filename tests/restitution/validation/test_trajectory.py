@@ -1,6 +1,7 @@
 """Somebody else's trajectory: scored by what it is made of, refused where it cannot be the record's impact."""
 
 import json
+import math
 
 import numpy as np
 import pandas as pd
@@ -10,7 +11,8 @@ from restitution import datasets
 from restitution.cli import main
 from restitution.errors import InputError
 from restitution.tracks import Track
-from restitution.validation import assert_trajectory, case_of, score
+from restitution.validation import assert_trajectory, case_of, score, trajectory_page
+from restitution.validation.trajectory_file import read_trajectory
 
 CASE = case_of("gondret-st152")
 APPROACH, E, FALL = 0.59, (0.81, 0.71, 0.55), 8.0
@@ -123,6 +125,88 @@ def test_an_assertion_names_what_fails_and_a_known_shortfall_can_be_held():
         assert_trajectory(columns, "gondret-st152", allow={"apex 9": 1.0})
 
 
+HEADERS = {
+    "t/sqrt(d/g),gap/d": (math.sqrt(CASE.sphere.diameter / CASE.gravity), CASE.sphere.diameter, "gap"),
+    "t [s], gap [mm]": (1, 1e-3, "gap"),
+    "Zeit [ms];Abstand [mm]": (1e-3, 1e-3, "gap"),
+    "t,gap": (1, 1, "gap"),
+    "t,v": (1, 1, "velocity"),
+    "time (ms),velocity (mm/s)": (1e-3, 1e-3, "velocity"),
+}
+
+
+def written(folder, header):
+    """A file of the closed form under a header; its path."""
+    time, gap, velocity, *_ = flown()
+    time_unit, unit, quantity = HEADERS[header]
+    values = (gap if quantity == "gap" else velocity) / unit
+    sign = ";" if ";" in header else ","
+    rows = [sign.join((f"{t:.9g}", f"{x:.9g}")) for t, x in zip(time / time_unit, values, strict=True)]
+    if sign == ";":
+        rows = [row.replace(".", ",") for row in rows]
+    path = folder / f"{list(HEADERS).index(header)}.csv"
+    path.write_text("\n".join([header, *rows]) + "\n", "utf-8")
+    return path
+
+
+@pytest.mark.parametrize("header", HEADERS)
+def test_a_file_whose_header_says_what_it_holds_can_be_asserted(header, tmp_path):
+    _, gap, _, apexes, spans = flown()
+    scored = score("g", Track.from_table(pd.DataFrame({"time_s": flown()[0], "gap_m": gap})), CASE)
+    held = dict.fromkeys((r.label for r in scored.judged.row.truth()), 1e3)
+    found = assert_trajectory(written(tmp_path, header), "gondret-st152", allow=held, may_lack=held)
+    assert found.values["apex 1, mm"] == pytest.approx(1e3 * apexes[0], rel=0.01)
+    assert found.values["flight 1, ms"] == pytest.approx(1e3 * spans[0], rel=0.01)
+    assert found.values["approach, m/s"] == pytest.approx(APPROACH, rel=0.01)
+
+
+def test_units_taken_as_si_are_told_and_others_noticed(tmp_path):
+    plain = written(tmp_path, "t,gap")
+    assert any("SI" in note for note in read_trajectory(plain, CASE.conditions).notes)
+    for time_unit, unit in ((1e-3, 1), (1, 1e-3), (1e-3, 1e-3)):  # both: the speed is as it should be
+        time, gap, *_ = flown()
+        pd.DataFrame({"t": time / time_unit, "gap": gap / unit}).to_csv(plain, index=False)
+        with pytest.raises(InputError, match="wrong unit"):
+            assert_trajectory(plain, "gondret-st152")
+
+
+def test_files_of_different_form_stand_side_by_side(tmp_path):
+    """Options are for those that need them; what cannot share options has a settings file each."""
+    files = [written(tmp_path, header) for header in HEADERS]
+    time, gap, *_ = flown()
+    pd.DataFrame({"a": 1e3 * time, "b": 1e2 * gap}).to_csv(tmp_path / "bare.csv", index=False)
+    told = ["--column", "time_s=a", "--column", "gap_m=b", "--time-unit", "ms", "--unit", "cm"]
+    quiet = [files[0], files[1], files[2], files[5], tmp_path / "bare.csv"]
+    call = ["validate", "--case", "gondret-st152", "--out", str(tmp_path / "out")]
+    assert main([*call, "--trajectory", *map(str, quiet), *told]) == 1
+    settings = []
+    for k, text in enumerate(('time = "a"\nposition = "b"\ntime_unit = "ms"\nunit = "cm"\n', "")):
+        (tmp_path / f"{k}.toml").write_text(text)
+        settings.append(str(tmp_path / f"{k}.toml"))
+    both = [str(tmp_path / "bare.csv"), str(files[3])]
+    values = [t["values"] for t in json.loads((tmp_path / "out" / "scores.json").read_text())["trajectories"]]
+    assert main([*call, "--trajectory", *both, "--settings", *settings]) == 1
+    values += [t["values"] for t in json.loads((tmp_path / "out" / "scores.json").read_text())["trajectories"]]
+    for one in values:
+        assert one["apex 1, mm"] == pytest.approx(values[0]["apex 1, mm"], rel=5e-3)
+
+
+def test_a_figure_shows_all_that_is_scored_and_little_else():
+    from matplotlib.figure import Figure
+
+    time, gap, _, apexes, spans = flown()
+    scored = score("mine", Track.from_table(pd.DataFrame({"time_s": time, "gap_m": gap})), CASE)
+    ax = Figure().subplots()
+    trajectory_page.fill(ax, [scored])
+    unit = math.sqrt(CASE.sphere.diameter / CASE.gravity)
+    record = datasets.load_track(CASE.record)
+    (begin, end), (low, high) = ax.get_xlim(), ax.get_ylim()
+    assert end > sum(spans) / unit
+    assert low == 0
+    assert high > max(apexes) / CASE.sphere.diameter
+    assert begin > min(record.time_s[0], time[0]) / unit - 1
+
+
 def test_names_of_cases_are_taken_in_any_form_and_offered():
     assert case_of("gondret2002_st152").record == case_of("gondret_st152_10").record == CASE.record
     with pytest.raises(InputError, match="gondret-st27"):
@@ -152,8 +236,11 @@ def test_the_published_simulation_is_scored_beside_ours(tmp_path, capsys):
         ("time_s,gap_m\n0,0.01\n0.01,nan\n", "at least 4"),
         ("time_s,gap_m\n" + "".join(f"{t / 100},{0.01 + t / 1000}\n" for t in range(20)), "contact"),
         ("time_s,gap_m\n" + "".join(f"{t},{1 - t / 10}\n" for t in (3, 1, 2, 0, 4)), "time"),
+        ("time_s,gap_m\n" + "".join(f"{abs(t - 9.3)},{t}\n" for t in range(20)), "swapped"),
+        ("t,velocity_z\n0,1\n1,2\n2,3\n3,4\n", "gap_m=velocity_z"),
+        ("x1,v\n0,1\n1,2\n2,3\n3,4\n", "velocity_m_s=v"),
     ],
-    ids=["too short", "no contact", "unsorted"],
+    ids=["too short", "no contact", "unsorted", "swapped", "unknown", "velocity"],
 )
 def test_what_is_no_trajectory_is_one_line_and_nothing_is_written(rows, said, tmp_path, capsys):
     (tmp_path / "bad.csv").write_text(rows)
@@ -163,4 +250,21 @@ def test_what_is_no_trajectory_is_one_line_and_nothing_is_written(rows, said, tm
     error = capsys.readouterr().err.strip().splitlines()
     assert len(error) == 1
     assert said in error[0]
-    assert not out.exists() or not list(out.iterdir())
+    assert not out.exists()
+
+
+def test_only_what_is_not_given_is_asked_for(tmp_path, capsys):
+    (tmp_path / "bare.dat").write_text("0 3\n1 2\n2 1\n3 0\n")
+    call = ["validate", "--trajectory", str(tmp_path / "bare.dat"), "--case", "gondret-st152"]
+    told = ["--unit", "d", "--time-unit", "sqrt(d/g)", "--point", "lowest", "--column", "time_s=1"]
+    assert main([*call, *told, "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert "gap_m=2" in error
+    assert not any(option in error for option in ("--unit", "--time-unit", "--point", "time_s="))
+
+
+def test_names_must_tell_trajectories_apart(tmp_path, capsys):
+    call = ["validate", "--case", "gondret-st152", "--out", str(tmp_path / "out"), "--trajectory"]
+    assert main([*call, CASE.record, "biegert2017_st152", "--name", "one", "one"]) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+    assert not (tmp_path / "out").exists()
