@@ -6,7 +6,7 @@ sphere meets the wall.
 
 from __future__ import annotations
 
-from restitution.foreign.programs import CLOCKS, GAPS, VELOCITIES
+from restitution.foreign.programs import CLOCKS, GAPS, POSITIONS, VELOCITIES
 from restitution.foreign.settings import Settings
 from restitution.foreign.table import ForeignTable
 from restitution.foreign.track import is_track
@@ -61,9 +61,14 @@ def left_open(table: ForeignTable, shared: Settings) -> tuple[Settings, tuple[st
 
 
 def _columns(table: ForeignTable) -> tuple[str | None, str | None, str | None]:
-    """The columns of the time, the gap and the velocity by their names; none beside the project's own."""
+    """The columns of the time, the gap and the velocity by their names; none beside the project's own.
+
+    A height leaves open whose it is, so that beside one a velocity is not what was clearly meant.
+    """
+
+    def first(names: tuple[str, ...]) -> str | None:
+        return next((own for name in names if (own := table.column(name))), None)
+
     if is_track(table, Settings()):
         return None, None, None
-    return tuple(  # type: ignore[return-value]
-        next((own for name in names if (own := table.column(name))), None) for names in (CLOCKS, GAPS, VELOCITIES)
-    )
+    return first(CLOCKS), first(GAPS), None if first(POSITIONS) else first(VELOCITIES)

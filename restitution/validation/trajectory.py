@@ -269,6 +269,7 @@ def assert_trajectory(
     """
     import pandas as pd
 
+    __tracebackhide__ = True  # pytest then shows the test's line and the message alone
     held_against, notes = case_of(case), ()
     if isinstance(track, str | Path):
         found = read_trajectory(track, held_against.conditions)

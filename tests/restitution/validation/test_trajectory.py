@@ -238,9 +238,10 @@ def test_the_published_simulation_is_scored_beside_ours(tmp_path, capsys):
         ("time_s,gap_m\n" + "".join(f"{t},{1 - t / 10}\n" for t in (3, 1, 2, 0, 4)), "time"),
         ("time_s,gap_m\n" + "".join(f"{abs(t - 9.3)},{t}\n" for t in range(20)), "swapped"),
         ("t,velocity_z\n0,1\n1,2\n2,3\n3,4\n", "gap_m=velocity_z"),
+        ("t,z,v\n0,1,0\n1,2,0\n2,3,0\n3,4,1\n", "gap_m=z"),
         ("x1,v\n0,1\n1,2\n2,3\n3,4\n", "velocity_m_s=v"),
     ],
-    ids=["too short", "no contact", "unsorted", "swapped", "unknown", "velocity"],
+    ids=["too short", "no contact", "unsorted", "swapped", "unknown", "height and velocity", "velocity"],
 )
 def test_what_is_no_trajectory_is_one_line_and_nothing_is_written(rows, said, tmp_path, capsys):
     (tmp_path / "bad.csv").write_text(rows)
