@@ -7,13 +7,15 @@ into one line a defect and exit status 2. Any other exception is a defect of thi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 
 MOST_LINES = 20
 """Defects that are printed; of more, how many there are."""
 LONGEST_VALUE, LONGEST_PLACE, LONGEST_RULE = 80, 300, 600
 """Characters of what is printed of one defect."""
+MOST_APART = 100
+"""Rows with one defect that are told apart; of more, how many there are, for a file may have millions."""
 
 
 def printable(text: str, most: int | None = None, keep: str = "") -> str:
@@ -32,7 +34,10 @@ def printable(text: str, most: int | None = None, keep: str = "") -> str:
 
 @dataclass(frozen=True)
 class Defect:
-    """One thing wrong at one place. ``row`` is the line number in the file, the header being row 1."""
+    """One thing wrong at one place. ``row`` is the line number in the file, the header being row 1.
+
+    Or the same at many: in ``rows`` of them, from ``row`` to ``last``.
+    """
 
     rule: str
     _: KW_ONLY
@@ -40,6 +45,8 @@ class Defect:
     row: int | None = None
     field: str | None = None
     value: str | None = None
+    rows: int = 1
+    last: int | None = None
 
     def __str__(self) -> str:
         place = printable(":".join(str(p) for p in (self.file, self.row) if p is not None), LONGEST_PLACE)
@@ -48,7 +55,34 @@ class Defect:
             f"= '{printable(self.value, LONGEST_VALUE)}'" if self.value is not None else "",
         ]
         subject = " ".join(w for w in what if w)
-        return ": ".join(part for part in (place, subject, printable(self.rule, LONGEST_RULE)) if part)
+        rule = printable(self.rule, LONGEST_RULE)
+        if self.rows > 1:
+            rule += f" (and {self.rows - 1} more row{'s' * (self.rows > 2)}, the last {self.last})"
+        return ": ".join(part for part in (place, subject, rule) if part)
+
+
+Rule = str | Callable[[int], str]
+"""What is wrong in some rows, by the index into them where it differs from row to row."""
+
+
+def of_rows(
+    rule: Rule,
+    rows: Sequence[int],
+    values: Callable[[int], str] | None = None,
+    *,
+    file: str | None = None,
+    field: str | None = None,
+) -> Iterator[Defect]:
+    """One thing wrong in many rows of a file: a defect each of the first :data:`MOST_APART`, one for all others.
+
+    What differs from row to row, ``rule`` or ``values``, is told by the index into ``rows``.
+    """
+    for i, row in enumerate(rows[:MOST_APART]):
+        here = rule if isinstance(rule, str) else rule(i)
+        left = len(rows) - i if i == MOST_APART - 1 else 1
+        last = int(rows[-1]) if left > 1 else None
+        value = None if values is None else values(i)
+        yield Defect(here, file=file, row=int(row), field=field, value=value, rows=left, last=last)
 
 
 def by_cause(defects: Iterable[Defect]) -> list[Defect]:
@@ -58,12 +92,14 @@ def by_cause(defects: Iterable[Defect]) -> list[Defect]:
         own = number if defect.row is None else None
         key = (defect.file, defect.field, re.sub(r"\d+(\.\d+)?", "#", defect.rule), own)
         causes.setdefault(key, []).append(defect)
-    return [
-        group[0]
-        if len(group) == 1
-        else replace(group[0], rule=f"{group[0].rule} (and {len(group) - 1} more rows, the last {group[-1].row})")
-        for group in causes.values()
-    ]
+    return [_joined(group) for group in causes.values()]
+
+
+def _joined(group: Sequence[Defect]) -> Defect:
+    if len(group) == 1:
+        return group[0]
+    last = max(d.row or 0 if d.last is None else d.last for d in group)
+    return replace(group[0], rows=sum(d.rows for d in group), last=last)
 
 
 def first_of(defects: Iterable[Defect]) -> list[Defect]:

@@ -6,10 +6,13 @@ nesting ends. Whatever is wrong is one :class:`~restitution.errors.Defect` that 
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 import stat
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -63,6 +66,21 @@ def _read(path: str | Path, most: int) -> bytes:
         rule = f"is larger than {_size(most)}, the most that is read of such a file"
         raise InputError(Defect(rule, file=str(path)))
     return b"".join(parts)
+
+
+@contextmanager
+def lists_only() -> Iterator[None]:
+    """While rows of cells are made: nothing else, so that the search for unreachable circles is put off.
+
+    Each of its searches looks at every list that there is, and a table has a million.
+    """
+    on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if on:
+            gc.enable()
 
 
 def read_json(path: str | Path) -> Any:

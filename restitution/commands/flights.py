@@ -13,6 +13,7 @@ from restitution.commands.console import show, show_doubts, show_rows
 
 if TYPE_CHECKING:
     from restitution.flights import FlightImpacts, Flights
+    from restitution.foreign import ForeignTable
 
 _COLUMNS = ("bounce", "time_s", "apex_m", "sigma")
 
@@ -27,21 +28,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def read(args: argparse.Namespace) -> Flights | None:
-    """The bounces in the file; None where it is no table of them."""
+def read(args: argparse.Namespace, table: ForeignTable | None) -> Flights | None:
+    """The bounces in the file, which is read as ``table``; None where it is no table of them."""
     from restitution.conditions import read_conditions
     from restitution.errors import Defect, InputError
-    from restitution.flights import is_flights, read_flights
-    from restitution.foreign import read_foreign
-    from restitution.foreign.long_track import is_long_track
+    from restitution.flights.table import is_flights, read_flights
 
     names = {name: own for name, own in args.column if name in _COLUMNS}
-    if not Path(args.track).exists():
+    if table is None:
         return None
     settings = options.settings_of(args)
-    if is_long_track(args.track, settings):
-        return None
-    table = read_foreign(args.track, settings.decimal)
     if not is_flights(table, names):
         if names.keys() & {"bounce", "apex_m"}:
             rule = f"is no table of bounces by these names: the header names {', '.join(table.header)}"

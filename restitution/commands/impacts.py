@@ -55,10 +55,11 @@ def run(args: argparse.Namespace) -> None:
     if args.track == "-":
         args.track = "/dev/stdin"
     options.check_output("--out", args.out, filter(None, (args.track, args.conditions, args.settings)))
-    if (bounces := flights.read(args)) is not None:
+    opened = tracked.opened(args)
+    if (bounces := flights.read(args, opened.table)) is not None:
         flights.run(args, bounces)
         return
-    read = tracked.read(args)
+    read = tracked.read(args, opened)
     impacts = read.impacts(args)
     if args.strict:
         refuse(replace(doubt, where=args.track) for doubt in impacts.doubts)

@@ -46,10 +46,11 @@ def run(args: argparse.Namespace) -> None:
         options.check_output("--out", args.out, filter(None, (args.track, args.conditions, args.settings)))
     elif args.out:
         check_folder(args.out)
-    if flights.read(args) is not None:
+    file = tracked.opened(args)
+    if flights.read(args, file.table) is not None:
         rule = "has bounces alone, no track to look at: restitution impacts takes it"
         raise InputError(Defect(rule, file=args.track))
-    read = tracked.read(args, without_conditions=True)
+    read = tracked.read(args, file, without_conditions=True)
     impacts, notes, doubts = None, [*read.notes], of_record(read.track, None)
     if read.conditions is None:
         notes.append("fluid and sphere are not stated (--conditions FILE): no speeds, no St, no e_eff")

@@ -11,6 +11,7 @@ from restitution.commands import options
 
 if TYPE_CHECKING:
     from restitution.conditions import Conditions
+    from restitution.foreign import ForeignTable, ForeignTrack, Settings
     from restitution.impacts import Impacts
     from restitution.tracks import Track
 
@@ -83,7 +84,31 @@ def edge(args: argparse.Namespace) -> float:
     return args.film
 
 
-def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
+@dataclass(frozen=True)
+class Opened:
+    """What the options name, read once: a long track in plain numbers, any other ``table``, or a shipped record,
+    of which neither is there.
+    """
+
+    settings: Settings
+    long: ForeignTrack | None = None
+    table: ForeignTable | None = None
+
+
+def opened(args: argparse.Namespace) -> Opened:
+    """The file that the options name; a track or a table of bounces."""
+    from restitution.foreign import read_foreign
+    from restitution.foreign.long_track import read_long_track
+
+    settings = options.settings_of(args)
+    if not Path(args.track).exists():
+        return Opened(settings)
+    if (long := read_long_track(args.track, settings)) is not None:
+        return Opened(settings, long)
+    return Opened(settings, table=read_foreign(args.track, settings.decimal))
+
+
+def read(args: argparse.Namespace, file: Opened, without_conditions: bool = False) -> Tracked:
     """The track that the options name; ``without_conditions``: they need not be stated."""
     import math
 
@@ -91,8 +116,7 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
     from restitution.conditions import read_conditions
     from restitution.datasets.checks import fitting_schemas
     from restitution.errors import Defect, InputError
-    from restitution.foreign import read_foreign, read_track
-    from restitution.foreign.long_track import read_long_track
+    from restitution.foreign import read_track
     from restitution.foreign.track import is_track
 
     edge(args)
@@ -100,7 +124,7 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
         raise InputError(Defect("must be at least 2", field="--frames", value=f"{args.frames}"))
     if args.sigma is not None and not 0 < args.sigma < math.inf:
         raise InputError(Defect("must be positive and finite", field="--sigma", value=f"{args.sigma:g}"))
-    if not Path(args.track).exists():
+    if file.long is None and file.table is None:
         if args.track not in datasets.names():
             raise InputError(Defect("does not exist, and no shipped record has this name", file=args.track))
         resource = datasets.resource(args.track)
@@ -111,15 +135,12 @@ def read(args: argparse.Namespace, without_conditions: bool = False) -> Tracked:
             f"{args.track}: fluid and sphere are needed: --conditions FILE (impacts --template writes an example)"
         )
     options.check_track_columns(args.column)
-    settings = options.settings_of(args)
-    if (long := read_long_track(args.track, settings)) is not None:
-        conditions = read_conditions(args.conditions) if args.conditions else None
-        return Tracked(long.track(args.sigma), conditions, "measured", long.reading, long.notes)
-    table = read_foreign(args.track, settings.decimal)
-    kinds = fitting_schemas(table.header, {})
-    if not is_track(table, settings) and len(kinds) == 1:
-        rule = f"is a {kinds[0].name} table, not a track of time and gap or velocity"
-        raise InputError(Defect(rule, file=args.track))
+    if file.table is not None and not is_track(file.table, file.settings):
+        kinds = fitting_schemas(file.table.header, {})
+        if len(kinds) == 1:
+            rule = f"is a {kinds[0].name} table, not a track of time and gap or velocity"
+            raise InputError(Defect(rule, file=args.track))
     conditions = read_conditions(args.conditions) if args.conditions else None
-    found = read_track(table, settings, conditions)
+    found = file.long if file.table is None else read_track(file.table, file.settings, conditions)
+    assert found is not None
     return Tracked(found.track(args.sigma), conditions, "measured", found.reading, found.notes)

@@ -13,6 +13,7 @@ from pathlib import Path
 from restitution.errors import Defect, InputError
 from restitution.foreign.programs import POSITIONS, TIMES
 from restitution.inputs import read_bytes
+from restitution.tables.widths import check_widths
 from restitution.units import NAMES_BEYOND_ASCII
 
 _BINARY = {
@@ -54,11 +55,14 @@ def read_lines(path: str | Path) -> list[str]:
 
 
 def lines_of(text: str, file: str) -> list[str]:
-    """The lines of a text; raises :class:`InputError` for markup, which is no table."""
+    """The lines of a text; raises :class:`InputError` for markup, which is no table, and for lines too wide."""
     if kind := _MARKUP.get(text.lstrip()[:1]):
         digitised = "; of a project of WebPlotDigitizer only fit and compare take impacts" * (kind == "JSON")
         raise InputError(Defect(f"is {kind}, no table; export the table as CSV{digitised}", file=file))
-    return text.split("\n")
+    lines = text.split("
+")
+    check_widths(lines, file)
+    return lines
 
 
 def _decoded(data: bytes, file: str) -> str:

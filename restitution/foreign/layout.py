@@ -11,9 +11,12 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from restitution.errors import Defect, InputError
 from restitution.foreign.number_text import Decimal, decimal_of, has_thousands, is_lost, is_number
+from restitution.tables.csv_text import Cells
+from restitution.units import NUMBER
 
 SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "spaces"}
 COMMENTS = ("#", "%", "//")
@@ -21,12 +24,13 @@ _SAMPLE = 200
 """Lines of the body that are tried."""
 _SAME_WIDTH = 0.8
 """Part of the rows that must have as many cells as most have."""
+_SEPARATOR_LINE = re.compile(r'"?sep=.{0,2}"?', re.IGNORECASE)
 _WORD = re.compile(r'"[^"]*"|\S+')
+_BRACKETS = re.compile(r"[()]")
 _VECTOR = re.compile(r"\([^()]*\)")
 
 
-@dataclass(frozen=True)
-class Row:
+class Row(NamedTuple):
     """One line that is no comment, as cells; ``line`` counts from 1."""
 
     line: int
@@ -44,7 +48,9 @@ class Layout:
     width: int
     decimal: Decimal = "."
     vectors: bool = False
-    lines: list[str] = field(default_factory=list, repr=False)
+    lines: Sequence[str] = field(default=(), repr=False)
+    odd: frozenset[str] = field(default=frozenset(), repr=False)
+    """All cells that are no plain numbers, each once."""
 
     @property
     def body(self) -> list[Row]:
@@ -52,21 +58,25 @@ class Layout:
         return self.rows[-_SAMPLE:]
 
 
-def layout_of(lines: Sequence[str], file: str, decimal: Decimal | None = None) -> Layout:
-    """Cut the lines of a file; ``decimal`` overrides what its numbers say."""
+def layout_of(
+    lines: Sequence[str], file: str, decimal: Decimal | None = None, only: Sequence[int] | None = None
+) -> Layout:
+    """Cut the lines of a file, or ``only`` those of these numbers; ``decimal`` overrides what its numbers say."""
     plain_lines, comments = [], []
-    for number, line in enumerate(lines, 1):
-        text = line.strip()
-        mark = next((mark for mark in COMMENTS if text.startswith(mark)), None)
-        if mark is not None:
+    for number, line in enumerate(lines, 1) if only is None else ((n, lines[n - 1]) for n in only):
+        text = line.lstrip()
+        if text.startswith(COMMENTS):
+            mark = next(mark for mark in COMMENTS if text.startswith(mark))
             comments.append((number, text.lstrip(mark).strip()))
-        elif text and not re.fullmatch(r'"?sep=.{0,2}"?', text, re.IGNORECASE):
+        elif text and not (text[0] in 'sS"' and _SEPARATOR_LINE.fullmatch(text.rstrip())):
             plain_lines.append((number, line))
     vectors = any(_VECTOR.search(line) for _, line in plain_lines[-3:]) and _all_vectors(plain_lines[-_SAMPLE:])
     separator = " " if vectors else _separator([line for _, line in plain_lines[-_SAMPLE:]])
-    rows = _cut(plain_lines, separator, file)
+    known = Cells()
+    rows = _cut(plain_lines, separator, file, known)
     width = _width([row.cells for row in rows[-_SAMPLE:]])[0]
-    layout = Layout(file, separator, rows, comments, width, vectors=vectors, lines=list(lines))
+    odd = frozenset(cell for cell in known.values() if not NUMBER.fullmatch(cell))
+    layout = Layout(file, separator, rows, comments, width, vectors=vectors, lines=lines, odd=odd)
     layout.decimal = decimal or _decimal(layout)
     return layout
 
@@ -80,7 +90,7 @@ def split(line: str, separator: str) -> list[str]:
 
 def _all_vectors(lines: Sequence[tuple[int, str]]) -> bool:
     """Whether rows are numbers and brackets of numbers, as OpenFOAM writes them."""
-    numbers = [all(is_number(word) for word in re.sub(r"[()]", " ", line).split()) for _, line in lines]
+    numbers = [all(is_number(word) for word in _BRACKETS.sub(" ", line).split()) for _, line in lines]
     return sum(numbers) >= _SAME_WIDTH * len(numbers)
 
 
@@ -111,16 +121,18 @@ def _width(rows: Sequence[list[str]]) -> tuple[int, float]:
     return width, count / len(rows)
 
 
-def _cut(lines: Sequence[tuple[int, str]], separator: str, file: str) -> list[Row]:
+def _cut(lines: Sequence[tuple[int, str]], separator: str, file: str, known: Cells) -> list[Row]:
     if separator == " ":
-        return [Row(number, split(re.sub(r"[()]", " ", line), " ")) for number, line in lines]
+        return [
+            Row(number, [known[cell] for cell in split(_BRACKETS.sub(" ", line), " ")]) for number, line in lines
+        ]
     reader = csv.reader(
         (line + "\n" for _, line in lines), delimiter=separator, skipinitialspace=True, strict=True
     )
     rows, first = [], 0  # a quoted cell may span lines; a row is named by its first
     try:
         for cells in reader:
-            rows.append(Row(lines[first][0], [cell.strip() for cell in cells]))
+            rows.append(Row(lines[first][0], [known[cell] for cell in cells]))
             first = reader.line_num
     except csv.Error as error:
         rule = f"is not a table separated by {SEPARATORS[separator]} from here on: {error}"
@@ -131,12 +143,15 @@ def _cut(lines: Sequence[tuple[int, str]], separator: str, file: str) -> list[Ro
 def _decimal(layout: Layout) -> Decimal:
     """The decimal sign of the body; raises where it is not clear."""
     rows = [row for row in layout.rows if len(row.cells) == layout.width]
-    for row in rows:
+    thousands = {cell for cell in layout.odd if has_thousands(cell)}
+    for row in rows if thousands else ():
         for cell in row.cells:
-            if has_thousands(cell) and _beside_numbers(row, cell):
+            if cell in thousands and _beside_numbers(row, cell):
                 rule = "has thousands separators: write the number without them"
                 raise InputError(Defect(rule, file=layout.file, row=row.line, value=cell))
-    decimal, doubt = decimal_of(cell for row in rows for cell in row.cells)
+    if not any("," in cell for cell in layout.odd):
+        return "."
+    decimal, doubt = decimal_of(dict.fromkeys(cell for row in rows for cell in row.cells))
     if decimal is None:
         raise InputError(Defect(f"{doubt} (decimal = ',' or '.' in a settings file says so)", file=layout.file))
     return decimal

@@ -28,11 +28,6 @@ LONG = 2**20
 _PLAIN = b"0123456789+-.eE,\n"
 
 
-def is_long_track(path: str | Path, settings: Settings) -> bool:
-    """Whether a file looks like one, by its size, its names and the characters below them."""
-    return _names_and_numbers(path, settings) is not None
-
-
 def read_long_track(path: str | Path, settings: Settings) -> ForeignTrack | None:
     """The track, or None where the general reader must look at the file."""
     found = _names_and_numbers(path, settings)

@@ -47,10 +47,16 @@ def plain(cell: str, decimal: Decimal = ".") -> str:
     """The cell as Python writes numbers; as it is where it is no number."""
     if NUMBER.fullmatch(cell):
         return cell  # most are
+<<<<<<< HEAD
     if (time := seconds(cell)) is not None:
         return time
     text = cell.translate(_TYPOGRAPHIC).strip()
     text = _EXPONENT.sub(r"\1e\2", text) if _EXPONENT.fullmatch(text) else text
+=======
+    text = _ascii(cell).strip()
+    if _EXPONENT.fullmatch(text):
+        text = _EXPONENT.sub(r"\1e\2", text)
+>>>>>>> 2fffb09 (Floods of bad cells and columns are refused at once: columns read whole, one defect a cause, a table read once)
     if decimal == "," and _COMMA.fullmatch(text):
         text = text.replace(",", ".")
     return text if NUMBER.fullmatch(text) else cell
@@ -76,7 +82,11 @@ def is_lost(cell: str) -> bool:
 
 def has_thousands(cell: str) -> bool:
     """Whether a cell is a number with thousands separators, which are never guessed away."""
-    return not NUMBER.fullmatch(cell) and bool(_THOUSANDS.fullmatch(cell.translate(_TYPOGRAPHIC).strip()))
+    return bool(_THOUSANDS.fullmatch(_ascii(cell).strip())) and not NUMBER.fullmatch(cell)
+
+
+def _ascii(cell: str) -> str:
+    return cell if cell.isascii() else cell.translate(_TYPOGRAPHIC)
 
 
 def decimal_of(cells: Iterable[str]) -> tuple[Decimal | None, str]:
@@ -85,13 +95,13 @@ def decimal_of(cells: Iterable[str]) -> tuple[Decimal | None, str]:
     A comma is a decimal one if any number shows it, as in 0,5 or 1,25. Where every comma has one to three digits
     before it and three after, as in 1,234, it may stand for thousands.
     """
-    texts = [plain(cell) for cell in cells]
-    commas = [text for text in texts if _COMMA.fullmatch(text)]
-    points = [text for text in texts if _POINT.fullmatch(text)]
+    cells = list(cells)
+    commas = [text for cell in cells if "," in cell and _COMMA.fullmatch(text := plain(cell))]
     if not commas:
         return ".", ""
-    if points:
-        return None, f"has commas and points in its numbers, {commas[0]} and {points[0]}: thousands separators?"
+    point = next((text for cell in cells if "." in cell and _POINT.fullmatch(text := plain(cell))), None)
+    if point is not None:
+        return None, f"has commas and points in its numbers, {commas[0]} and {point}: thousands separators?"
     if all(_AS_THOUSANDS.fullmatch(text) for text in commas):
         return None, f"has numbers such as {commas[0]}: is the comma a decimal sign or for thousands?"
     return ",", ""

@@ -42,11 +42,8 @@ class Section:
 
     def layout(self, of: Layout) -> Layout:
         """Its own layout, lines counted as in the whole file."""
-        keep = [
-            n < self.head or (self.begin <= n < self.end and n not in self.repeated) for n in range(1, self.end)
-        ]
-        lines = [line if own else "" for line, own in zip(of.lines, keep, strict=False)]
-        return layout_of(lines, of.file, of.decimal)
+        own = (n for n in range(max(self.begin, self.head), self.end) if n not in self.repeated)
+        return layout_of(of.lines[: self.end - 1], of.file, of.decimal, [*range(1, self.head), *own])
 
 
 @dataclass(frozen=True)
@@ -65,7 +62,9 @@ class _Break:
 def sections(layout: Layout) -> list[Section]:
     """The tables of a text with their names; one alone, or none, where it is a single table."""
     numeric = numeric_columns(layout)
-    data = [row for row in layout.rows if _is_data(row, numeric)]
+    lost = {cell for cell in layout.odd if is_lost(cell)}
+    words = {cell for cell in layout.odd if not is_number(cell)}
+    data = [row for row in layout.rows if _is_data(row, numeric, lost, words)]
     breaks = _breaks(layout, data)
     if len(breaks) < 2:
         return []
@@ -95,12 +94,13 @@ def sections(layout: Layout) -> list[Section]:
     ]
 
 
-def _is_data(row: Row, numeric: list[int]) -> bool:
+def _is_data(row: Row, numeric: list[int], lost: set[str], words: set[str]) -> bool:
     """Whether a row has numbers where the body has them, for the most part."""
-    if len(row.cells) < 2:
+    width = len(row.cells)
+    if width < 2:
         return False
-    filled = [row.cells[i] for i in numeric if i < len(row.cells) and not is_lost(row.cells[i])]
-    return bool(filled) and 2 * sum(map(is_number, filled)) > len(filled)
+    filled = [cell for i in numeric if i < width and (cell := row.cells[i]) not in lost]
+    return bool(filled) and 2 * sum(cell in words for cell in filled) < len(filled)
 
 
 def _breaks(layout: Layout, data: list[Row]) -> list[_Break]:

@@ -18,7 +18,7 @@ from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain, seconds
 from restitution.foreign.programs import Program
 from restitution.foreign.sections import Section, sections
-from restitution.inputs import read_bytes
+from restitution.inputs import lists_only, read_bytes
 from restitution.tables.csv_text import CsvText
 
 ROW = "row"
@@ -140,6 +140,7 @@ class ForeignTable:
         return replace(self, rows=[row for table in tables for row in table.rows], sections={})
 
 
+@lists_only()
 def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTable:
     """The table of numbers in a file, however it is written.
 
@@ -237,17 +238,21 @@ def _of_blocks(file: str, names: list[str], rows: list[Row], program: Program) -
 
 def _rows(rows: list[Row], columns: list[int], layout: Layout, file: str) -> list[tuple[int, list[str]]]:
     """The cells of the named columns; rows of another width are left for the strict reader to name."""
-    while rows and not any(rows[-1].cells):
-        rows = rows[:-1]
+    end = len(rows)
+    while end and not any(rows[end - 1].cells):
+        end -= 1
+    every = columns == list(range(layout.width))
     result = []
-    for row in rows:
-        cells = row.cells
+    for line, cells in rows[:end]:
         if len(cells) > layout.width and not any(cells[layout.width :]):
             cells = cells[: layout.width]
-        if len(cells) == layout.width:
+        if len(cells) == layout.width and not every:
             cells = [cells[i] for i in columns]
-        result.append((row.line, [plain(cell, layout.decimal) for cell in cells]))
-    return result
+        result.append((line, cells))
+    changed = {cell: text for cell in layout.odd if (text := plain(cell, layout.decimal)) != cell}
+    if not changed:
+        return result
+    return [(line, [changed.get(cell, cell) for cell in cells]) for line, cells in result]
 
 
 def _form(layout: Layout, heading: Heading) -> str:
@@ -270,9 +275,12 @@ def _bare(cell: str) -> str:
 
 def lost_rows(table: ForeignTable, names: list[str]) -> list[int]:
     """Which rows have no value in one of the columns."""
-    at = [table.header.index(name) for name in names]
-    return [k for k, (_, cells) in enumerate(table.rows) if len(cells) == len(table.header)
-            and any(is_lost(cells[i]) for i in at)]  # fmt: skip
+    width, found = len(table.header), set[int]()
+    for i in map(table.header.index, names):
+        cells = [row[i] if len(row) == width else "0" for _, row in table.rows]
+        lost = {cell for cell in set(cells) if is_lost(cell)}
+        found |= {k for k, cell in enumerate(cells) if cell in lost} if lost else set()
+    return sorted(found)
 
 
 def in_words(lines: list[int]) -> str:

@@ -7,15 +7,25 @@ from __future__ import annotations
 
 import codecs
 import csv
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from restitution.errors import Defect, InputError
-from restitution.inputs import read_bytes
+from restitution.errors import Defect, InputError, of_rows
+from restitution.inputs import lists_only, read_bytes
+from restitution.tables.widths import check_widths
 from restitution.units import NUMBER
 
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
+
+
+class Cells(dict[str, str]):
+    """Cells without the blanks about them, each text held once, by what stands in the file."""
+
+    def __missing__(self, cell: str) -> str:
+        bare = cell.strip()
+        self[cell] = bare if bare == cell else self[bare]
+        return self[cell]
 
 
 @dataclass
@@ -29,39 +39,42 @@ class CsvText:
     defects: list[Defect] = field(default_factory=list)
 
     @classmethod
+    @lists_only()
     def read(cls, path: str | Path) -> CsvText:
         """The text of a file; whatever keeps it from being read is a defect."""
         text = cls(path)
         try:
             data = read_bytes(path)
-        except InputError as error:
-            text.defects += error.defects
-        else:
             if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
                 text._defect("is UTF-16 text; save it as UTF-8", 1)
             elif not data.removeprefix(codecs.BOM_UTF8).strip():
                 text._defect("is empty")
             else:
                 text._read(data)
+        except InputError as error:
+            text.defects += error.defects
         return text
 
     def _defect(self, rule: str, row: int | None = None) -> None:
         self.defects.append(Defect(rule, file=str(self.path), row=row))
 
     def _read(self, data: bytes) -> None:
-        bad: set[int] = set()
-        reader = csv.reader(self._lines(data, bad), strict=True)
+        lines, bad = self._lines(data)
+        check_widths(lines, str(self.path))
+        known = Cells()
+        reader = csv.reader(lines, strict=True)
         first = 1  # a quoted cell may span lines; a record is named by its first
         try:
             for cells in reader:
-                cells = [cell.strip() for cell in cells]
-                lines, first = range(first, reader.line_num + 1), reader.line_num + 1
-                if lines[0] == 1:
+                cells = [known[cell] for cell in cells]
+                after = reader.line_num + 1
+                if first == 1:
                     self.header = [] if 1 in bad else self._header(cells)
-                elif bad.intersection(lines):
+                elif bad and not bad.isdisjoint(range(first, after)):
                     self.unreadable += 1
                 else:
-                    self.rows.append((lines[0], cells))
+                    self.rows.append((first, cells))
+                first = after
         except csv.Error as error:
             self._defect(f"is not CSV from here on: {error}", first)
         while self.rows and not any(self.rows[-1][1]) and len(self.rows[-1][1]) <= 1:
@@ -79,18 +92,39 @@ class CsvText:
             return cells
         return []
 
-    def _lines(self, data: bytes, bad: set[int]) -> Iterator[str]:
-        """Decoded lines; the numbers of those that are not text go into ``bad``."""
-        offset = len(codecs.BOM_UTF8) if data.startswith(codecs.BOM_UTF8) else 0
-        for number, line in enumerate(data[offset:].splitlines(keepends=True), 1):
+    def _lines(self, data: bytes) -> tuple[Sequence[str], set[int]]:
+        """Decoded lines, and the numbers of those that are not text, each of which is a defect."""
+        start = len(codecs.BOM_UTF8) if data.startswith(codecs.BOM_UTF8) else 0
+        raw = data[start:].splitlines(keepends=True)
+        nuls, strange, offset = list[tuple[int, int]](), list[tuple[int, str]](), start
+        if b"\0" not in data and _is_utf8(data):
+            return [line.decode() for line in raw], set()
+        lines = []
+        for number, line in enumerate(raw, 1):
             if b"\0" in line:
-                bad.add(number)
-                self._defect(f"has a NUL byte (byte {offset + line.index(0)} of the file)", number)
+                nuls.append((number, offset + line.index(0)))
             try:
-                yield line.decode()
+                lines.append(line.decode())
             except UnicodeDecodeError as error:
-                bad.add(number)
-                where = f"byte {offset + error.start} of the file is 0x{line[error.start]:02x}"
-                self._defect(f"is not UTF-8 text ({where}; Latin-1?); save it as UTF-8", number)
-                yield line.decode("latin-1")
+                at = f"byte {offset + error.start} of the file is 0x{line[error.start]:02x}"
+                strange.append((number, at))
+                lines.append(line.decode("latin-1"))
             offset += len(line)
+        file = str(self.path)
+        self.defects += of_rows(
+            lambda i: f"has a NUL byte (byte {nuls[i][1]} of the file)", [number for number, _ in nuls], file=file
+        )
+        self.defects += of_rows(
+            lambda i: f"is not UTF-8 text ({strange[i][1]}; Latin-1?); save it as UTF-8",
+            [number for number, _ in strange],
+            file=file,
+        )
+        return lines, {number for number, _ in (*nuls, *strange)}
+
+
+def _is_utf8(data: bytes) -> bool:
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        return False
+    return True

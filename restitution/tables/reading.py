@@ -7,20 +7,16 @@ be absent. pandas is imported only once the text of a table has been checked.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from functools import cache
-from itertools import pairwise
+import operator
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice, pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any
 
-from pydantic import BeforeValidator, TypeAdapter, ValidationError
-from pydantic import Field as PydanticField
-from pydantic_core import PydanticCustomError
-
-from restitution.errors import Defect, InputError
+from restitution.errors import Defect, InputError, Rule, of_rows
+from restitution.tables.columns import read_column
 from restitution.tables.csv_text import CsvText
-from restitution.tables.schema import Field, Rules, Schema
-from restitution.units import NUMBER
+from restitution.tables.schema import Rules, Schema
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,47 +106,55 @@ def _check(
     wanted = {name: columns.get(name, name) for name in schema.columns}
     found = [*text.defects, *_header_defects(file, schema, header, columns, scale)]
 
-    rows = []
-    for number, cells in text.rows:
-        if len(cells) == len(header):
-            rows.append((number, cells))
-        elif not any(cells):
-            found.append(Defect("is an empty line", file=file, row=number))
-        else:
-            hint = "; is the decimal sign a comma?" if len(cells) == 2 * len(header) else ""
-            rule = f"has {len(cells)} values where the header names {len(header)} columns{hint}"
-            found.append(Defect(rule, file=file, row=number))
+    rows = [row for row in text.rows if len(row[1]) == len(header)]
+    lines = [number for number, _ in rows]
+    if len(rows) < len(text.rows):
+        found += _width_defects(file, header, [row for row in text.rows if len(row[1]) != len(header)])
     total, needed = len(text.rows) + text.unreadable, schema.rules.minimum_rows
     if total < needed:
         rule = f"has {total} rows below the header; at least {needed} are needed"
         found.append(Defect(rule, file=file))
 
+    cells: dict[str, list[str]] = {}
     values: dict[str, list] = {}
     bad: set[int] = set()
     for f in schema.fields:
         if (own := wanted[f.name]) in header:
             position = header.index(own)
-            cells = [row[position] for _, row in rows]
-            values[f.name], wrong = _column(f, cells, scale.get(f.name, 1.0))
-            bad.update(index for index, _ in wrong)
-            found += [Defect(rule, file=file, row=rows[i][0], field=own, value=cells[i]) for i, rule in wrong]
-
-    lines = [number for number, _ in rows]
-    for i, name, rule in _row_defects(schema.rules, values, lines, [i for i in range(len(rows)) if i not in bad]):
-        own = wanted.get(name)
-        found.append(
-            Defect(
-                rule,
-                file=file,
-                row=lines[i],
-                field=own,
-                value=rows[i][1][header.index(own)] if own in header else None,
-            )
-        )
+            cells[f.name] = [row[position] for _, row in rows]
+            values[f.name], wrong = read_column(f, cells[f.name], scale.get(f.name, 1.0))
+            for rule, at in wrong:
+                bad.update(at)
+                found += _at(rule, at, lines, cells[f.name], file, own)
+    good = [i for i in range(len(rows)) if i not in bad] if bad else list(range(len(rows)))
+    for rule, at, name in _row_defects(schema.rules, values, lines, good):
+        found += _at(rule, at, lines, cells.get(name or ""), file, wanted.get(name or ""))
 
     order = {own: i for i, own in enumerate(header)}
     found.sort(key=lambda d: (d.row or 0, order.get(d.field, -1)))
     return found, values, lines
+
+
+def _at(
+    rule: Rule, at: Sequence[int], lines: Sequence[int], cells: Sequence[str] | None, file: str, own: str | None
+) -> Iterator[Defect]:
+    values = None if cells is None else lambda i: cells[at[i]]
+    return of_rows(rule, [lines[i] for i in at], values, file=file, field=own)
+
+
+def _width_defects(file: str, header: list[str], rows: list[tuple[int, list[str]]]) -> Iterator[Defect]:
+    """Rows that have not as many cells as the header has names."""
+    yield from of_rows("is an empty line", [number for number, cells in rows if not any(cells)], file=file)
+    for twice, hint in ((False, ""), (True, "; is the decimal sign a comma?")):
+        other = [row for row in rows if any(row[1]) and (len(row[1]) == 2 * len(header)) == twice]
+        counts = [len(cells) for _, cells in other]
+        rule = _by_row(counts, f"has {{}} values where the header names {len(header)} columns{hint}")
+        yield from of_rows(rule, [number for number, _ in other], file=file)
+
+
+def _by_row(values: Sequence[Any], rule: str) -> Rule:
+    """A rule into which the value of each row is put."""
+    return lambda i: rule.format(values[i])
 
 
 def _header_defects(
@@ -164,97 +168,47 @@ def _header_defects(
     for own, needed in wanted.items():
         if needed and own not in header:
             yield Defect(f"is missing; the header names {', '.join(header)}", file=file, row=1, field=own)
+    seen: set[str] = set()
     for i, name in enumerate(header):
-        if name in header[:i] and (name in wanted or not columns):
+        if name in seen and (name in wanted or not columns):
             yield Defect("appears more than once in the header", file=file, row=1, field=name)
         elif name not in wanted and not columns:
             yield Defect(known, file=file, row=1, field=name or f"column {i + 1}")
+        seen.add(name)
 
 
 def _row_defects(
     rules: Rules, values: Mapping[str, list], lines: list[int], good: list[int]
-) -> Iterator[tuple[int, str | None, str]]:
-    """(row index, column, rule) for every rule between rows or fields that is broken among the ``good`` rows."""
+) -> Iterator[tuple[Rule, list[int], str | None]]:
+    """(rule, row indices, column) for every rule between rows or fields that is broken among the ``good`` rows."""
     for name in rules.strictly_increasing:
-        for before, here in pairwise(good if name in values else ()):
-            first, second = values[name][before], values[name][here]
-            if second == first:
-                yield here, name, f"repeats the value of row {lines[before]}"
-            elif second < first:
-                yield here, name, f"must be greater than in row {lines[before]} ({first})"
+        column = values.get(name, [])
+        pairs = [] if _increasing([column[i] for i in good] if column else []) else list(pairwise(good))
+        same = [(before, here) for before, here in pairs if column[here] == column[before]]
+        back = [(before, here) for before, here in pairs if column[here] < column[before]]
+        rows = [lines[before] for before, _ in same]
+        yield _by_row(rows, "repeats the value of row {}"), [here for _, here in same], name
+        larger = [(lines[before], column[before]) for before, _ in back]
+        yield _by_row(larger, "must be greater than in row {0[0]} ({0[1]})"), [here for _, here in back], name
     for names in rules.unique:
         keys = [name for name in names if name in values]
         seen: dict[tuple, int] = {}
+        again = []
         for i in good if keys else ():
             first = seen.setdefault(tuple(values[name][i] for name in keys), i)
             if first != i:
-                yield i, None, f"repeats row {lines[first]} in {', '.join(keys)}"
+                again.append((first, i))
+        rows = [lines[first] for first, _ in again]
+        yield _by_row(rows, f"repeats row {{}} in {', '.join(keys)}"), [i for _, i in again], None
     for rule in rules.required_when:
-        for i in good:
-            applies = all(name in values and values[name][i] == given for name, given in rule.when.items())
-            if applies and (rule.field not in values or values[rule.field][i] is None):
-                condition = ", ".join(f"{name} is {given}" for name, given in rule.when.items())
-                yield i, rule.field, f"must not be empty where {condition}"
+        applies = good if rule.when.keys() <= values.keys() else []
+        for name, given in rule.when.items():
+            applies = [i for i in applies if values[name][i] == given]
+        column = values.get(rule.field)
+        condition = ", ".join(f"{name} is {given}" for name, given in rule.when.items())
+        empty = [i for i in applies if column is None or column[i] is None]
+        yield f"must not be empty where {condition}", empty, rule.field
 
 
-def _column(f: Field, cells: list[str], scale: float) -> tuple[list, list[tuple[int, str]]]:
-    """The values of one column and (index, rule) of every cell that is wrong."""
-    filled = [i for i, cell in enumerate(cells) if cell]
-    wrong: dict[int, str] = {}
-    if f.constraints.required:
-        wrong = dict.fromkeys((i for i, cell in enumerate(cells) if not cell), "must not be empty")
-    column = _column_type(f, scale)
-    try:
-        checked = column.validate_python([cells[i] for i in filled])
-    except ValidationError as error:
-        wrong |= {filled[e["loc"][0]]: _rule(e) for e in error.errors(include_url=False)}
-        filled = [i for i in filled if i not in wrong]
-        checked = column.validate_python([cells[i] for i in filled])
-    values: list[Any] = [None] * len(cells)
-    for i, value in zip(filled, checked, strict=True):
-        values[i] = value
-    return values, list(wrong.items())
-
-
-LONGEST_TEXT = 500
-"""Characters of a cell: a longer one is no name of anything."""
-_Text = Annotated[str, PydanticField(max_length=LONGEST_TEXT)]
-
-
-@cache
-def _column_type(f: Field, scale: float) -> TypeAdapter:
-    """The type of the filled cells of a column, made from the field's type and constraints."""
-    c = f.constraints
-    if f.type == "string":
-        return TypeAdapter(list[Literal[c.enum] if c.enum else _Text])  # type: ignore[misc]  # made at run time
-
-    def number(cell: str) -> float | str:
-        if not NUMBER.fullmatch(cell):
-            point = cell.replace(",", ".", 1)
-            hint = f"; write {point}" if NUMBER.fullmatch(point) else ""
-            raise PydanticCustomError("not_a_number", "is not a number{hint}", {"hint": hint})
-        return cell if f.type == "integer" else float(cell) * scale
-
-    bounds = PydanticField(ge=c.minimum, le=c.maximum, gt=c.exclusive_minimum, lt=c.exclusive_maximum)
-    if f.type == "integer":
-        return TypeAdapter(list[Annotated[int, bounds, BeforeValidator(number)]])
-    finite = PydanticField(allow_inf_nan=False)
-    return TypeAdapter(list[Annotated[float, bounds, finite, BeforeValidator(number)]])
-
-
-_RULES = {
-    "finite_number": "must be finite",
-    "int_parsing": "must be a whole number",
-    "greater_than": "must be greater than {gt:g}",
-    "greater_than_equal": "must be at least {ge:g}",
-    "less_than": "must be less than {lt:g}",
-    "less_than_equal": "must be at most {le:g}",
-    "string_too_long": "is longer than {max_length} characters",
-    "literal_error": "must be one of {expected}",
-}
-
-
-def _rule(error: Mapping[str, Any]) -> str:
-    """What a cell should have been, from pydantic's finding."""
-    rule = _RULES.get(error["type"])
-    return rule.format(**error["ctx"]) if rule and "ctx" in error else rule or error["msg"]
+def _increasing(numbers: list) -> bool:
+    return all(map(operator.lt, numbers, islice(numbers, 1, None)))
