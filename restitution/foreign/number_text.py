@@ -59,7 +59,7 @@ def plain(cell: str, decimal: Decimal = ".") -> str:
 >>>>>>> 2fffb09 (Floods of bad cells and columns are refused at once: columns read whole, one defect a cause, a table read once)
     if decimal == "," and _COMMA.fullmatch(text):
         text = text.replace(",", ".")
-    return text if NUMBER.fullmatch(text) else cell
+    return text if text != cell and NUMBER.fullmatch(text) else cell
 
 
 def is_number(cell: str) -> bool:
