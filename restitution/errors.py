@@ -36,7 +36,7 @@ def printable(text: str, most: int | None = None, keep: str = "") -> str:
 class Defect:
     """One thing wrong at one place. ``row`` is the line number in the file, the header being row 1.
 
-    Or the same at many: in ``rows`` of them, from ``row`` to ``last``.
+    ``others`` are further rows with the same one, in order.
     """
 
     rule: str
@@ -45,8 +45,7 @@ class Defect:
     row: int | None = None
     field: str | None = None
     value: str | None = None
-    rows: int = 1
-    last: int | None = None
+    others: tuple[int, ...] = ()
 
     def __str__(self) -> str:
         place = printable(":".join(str(p) for p in (self.file, self.row) if p is not None), LONGEST_PLACE)
@@ -56,8 +55,9 @@ class Defect:
         ]
         subject = " ".join(w for w in what if w)
         rule = printable(self.rule, LONGEST_RULE)
-        if self.rows > 1:
-            rule += f" (and {self.rows - 1} more row{'s' * (self.rows > 2)}, the last {self.last})"
+        if self.others:
+            more = "row" if len(self.others) == 1 else "rows"
+            rule += f" (and {len(self.others)} more {more}, the last {self.others[-1]})"
         return ": ".join(part for part in (place, subject, rule) if part)
 
 
@@ -79,10 +79,9 @@ def of_rows(
     """
     for i, row in enumerate(rows[:MOST_APART]):
         here = rule if isinstance(rule, str) else rule(i)
-        left = len(rows) - i if i == MOST_APART - 1 else 1
-        last = int(rows[-1]) if left > 1 else None
         value = None if values is None else values(i)
-        yield Defect(here, file=file, row=int(row), field=field, value=value, rows=left, last=last)
+        others = tuple(rows[MOST_APART:]) if i == MOST_APART - 1 else ()
+        yield Defect(here, file=file, row=row, field=field, value=value, others=others)
 
 
 def by_cause(defects: Iterable[Defect]) -> list[Defect]:
@@ -96,10 +95,12 @@ def by_cause(defects: Iterable[Defect]) -> list[Defect]:
 
 
 def _joined(group: Sequence[Defect]) -> Defect:
-    if len(group) == 1:
-        return group[0]
-    last = max(d.row or 0 if d.last is None else d.last for d in group)
-    return replace(group[0], rows=sum(d.rows for d in group), last=last)
+    first, *rest = group
+    if not rest:
+        return first
+    return replace(
+        first, others=tuple(sorted([*first.others, *(row for d in rest for row in (d.row or 0, *d.others))]))
+    )
 
 
 def first_of(defects: Iterable[Defect]) -> list[Defect]:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from restitution import datasets
 from restitution.doubts import Doubt
-from restitution.errors import Defect, InputError
+from restitution.errors import Defect, InputError, of_rows
 from restitution.tables.csv_text import CsvText
 from restitution.units import NUMBER
 
@@ -98,7 +98,7 @@ def read_runs(path: str | Path, record: str | None = None) -> list[Runs]:
     if text.defects:
         raise InputError(*text.defects)
     cells = _cells(text, str(file), record)
-    left_out = [row for row, state in cells["state"].items() if state.lower() not in ("", FINISHED)]
+    left_out = {row for row, state in cells["state"].items() if state.lower() not in ("", FINISHED)}
     rows = [row for row in cells["run"] if row not in left_out]
     if not rows:
         raise InputError(Defect("has no finished run", file=str(file)))
@@ -156,11 +156,12 @@ def _cells(text: CsvText, file: str, record: str | None) -> dict[str, dict[int, 
     defects += [
         Defect("appears more than once in the header", file=file, row=1, field=n) for n in counts if counts[n] > 1
     ]
-    defects += [
-        Defect(f"has {len(row)} values where the header names {len(text.header)} columns", file=file, row=number)
-        for number, row in text.rows
-        if len(row) != len(text.header)
-    ]
+    cut = [(number, len(row)) for number, row in text.rows if len(row) != len(text.header)]
+    defects += of_rows(
+        lambda i: f"has {cut[i][1]} values where the header names {len(text.header)} columns",
+        [number for number, _ in cut],
+        file=file,
+    )
     if not text.rows:
         defects.append(Defect("has no runs below the header", file=file))
     if defects:
@@ -175,54 +176,62 @@ def _kinds(
     cells: dict[str, dict[int, str]], names: Sequence[str], rows: Sequence[int], file: str
 ) -> tuple[list[str], list[Defect]]:
     """Which columns are texts, and cells that are neither what their column is nor empty."""
-    words, defects = [], []
+    words: list[str] = []
+    defects: list[Defect] = []
     for name in names:
-        texts = [row for row in rows if cells[name][row] and not NUMBER.fullmatch(cells[name][row])]
-        odd = [row for row in texts if cells[name][row].lower() in ("nan", "inf", "-inf", "none", "null")]
+        column = cells[name]
+        texts = [row for row in rows if column[row] and not NUMBER.fullmatch(column[row])]
+        odd = any(column[row].lower() in ("nan", "inf", "-inf", "none", "null") for row in texts)
         if len(texts) == len(rows) and not odd:
             words.append(name)
             continue
-        rule = "must be a finite number, as in the other runs"
-        defects += [Defect(rule, file=file, row=row, field=name, value=cells[name][row]) for row in texts]
-        defects += [
-            Defect("must not be empty", file=file, row=row, field=name) for row in rows if not cells[name][row]
-        ]
-        defects += [
-            Defect("must be finite", file=file, row=row, field=name, value=cells[name][row])
-            for row in rows
-            if row not in texts and cells[name][row] and not math.isfinite(float(cells[name][row]))
-        ]
+        numbers = set(rows).difference(texts)
+        endless = [row for row in rows if row in numbers and column[row] and not math.isfinite(float(column[row]))]
+        empty = [row for row in rows if not column[row]]
+        defects += _of_cells("must be a finite number, as in the other runs", texts, column, file, name)
+        defects += of_rows("must not be empty", empty, file=file, field=name)
+        defects += _of_cells("must be finite", endless, column, file, name)
     return words, defects
+
+
+def _of_cells(rule: str, rows: Sequence[int], cells: Mapping[int, str], file: str, name: str) -> Iterator[Defect]:
+    return of_rows(rule, rows, lambda i: cells[rows[i]], file=file, field=name)
 
 
 def _row_defects(
     cells: dict[str, dict[int, str]], rows: Sequence[int], numbers: Sequence[str], file: Path
 ) -> list[Defect]:
-    defects, seen = [], {}
+    again, seen = list[tuple[int, int]](), dict[str, int]()
     for row in rows:
-        name, track = cells["run"][row], cells["track"][row]
-        if not name:
-            defects.append(Defect("must not be empty", file=str(file), row=row, field="run"))
-        elif name in seen:
-            rule = f"is the name of the run in row {seen[name]} already"
-            defects.append(Defect(rule, file=str(file), row=row, field="run", value=name))
-        seen.setdefault(name, row)
-        if not track:
-            rule = "must not be empty: where is the run's trajectory? (state: failed leaves it out)"
-            defects.append(Defect(rule, file=str(file), row=row, field="track"))
-        elif not _place(track, file).is_file():
-            rule = "is no file: where is the run's trajectory?"
-            defects.append(Defect(rule, file=str(file), row=row, field="track", value=track))
-        record = cells["record"][row]
-        if record in datasets.names():
-            continue
-        place = _place(record, file)
-        if not (record and place.is_file()):
-            rule = "is no shipped record ('restitution data list'), and no file"
-            defects.append(Defect(rule, file=str(file), row=row, field="record", value=record))
-        else:
-            cells["record"][row] = str(place)
-    return list(dict.fromkeys(defects))
+        first = seen.setdefault(cells["run"][row], row)
+        if first != row and cells["run"][row]:
+            again.append((row, first))
+    names, tracks, records = cells["run"], cells["track"], cells["record"]
+    file_of = {track: _place(track, file).is_file() for track in set(tracks.values()) if track}
+    known = set(datasets.names())
+    own = {r: str(_place(r, file)) for r in set(records.values()) - known if r and _place(r, file).is_file()}
+    strange = [row for row in rows if records[row] not in known and records[row] not in own]
+    named, at = str(file), [row for row, _ in again]
+    defects = [
+        *of_rows("must not be empty", [row for row in rows if not names[row]], file=named, field="run"),
+        *of_rows(
+            lambda i: f"is the name of the run in row {again[i][1]} already",
+            at, lambda i: names[at[i]], file=named, field="run",
+        ),
+        *of_rows(
+            "must not be empty: where is the run's trajectory? (state: failed leaves it out)",
+            [row for row in rows if not tracks[row]], file=named, field="track",
+        ),
+        *_of_cells(
+            "is no file: where is the run's trajectory?",
+            [row for row in rows if tracks[row] and not file_of[tracks[row]]], tracks, named, "track",
+        ),
+        *_of_cells(
+            "is no shipped record ('restitution data list'), and no file", strange, records, named, "record"
+        ),
+    ]  # fmt: skip
+    records.update((row, own[records[row]]) for row in rows if records[row] in own)
+    return sorted(defects, key=lambda d: d.row or 0)
 
 
 def _place(given: str, file: Path) -> Path:
@@ -232,13 +241,36 @@ def _place(given: str, file: Path) -> Path:
 
 def _check_repeats(groups: Sequence[Runs]) -> None:
     """Refuse runs of the same parameters: one of them was counted twice, or a column that differs is missing."""
-    defects = []
+    defects: list[Defect] = []
     for g in groups:
-        for i, run in enumerate(g.runs):
-            for other in g.runs[:i]:
-                if run.record == other.record and np.allclose(run.values, other.values, rtol=_ALIKE, atol=0):
-                    rule = f"repeats the parameters of run {other.name} in row {other.row}"
-                    defects.append(Defect(rule, file=g.file, row=run.row, field="run", value=run.name))
-                    break
+        found = list[tuple[Run, Run]]()
+        for record in g.records:
+            runs = g.of(record)
+            levels = [_levels(np.array(column)) for column in zip(*(run.values for run in runs), strict=True)]
+            first: dict[tuple, Run] = {}
+            for run, level in zip(runs, zip(*levels, strict=True), strict=True):
+                if (known := first.setdefault(level, run)) is not run:
+                    found.append((known, run))
+        found.sort(key=lambda pair: pair[1].row)
+        defects += _repeats(found, g.file)
     if defects:
         raise InputError(*defects)
+
+
+def _levels(values: NDArray) -> list[int]:
+    """Which values of a parameter are the same, by number."""
+    order = np.argsort(values)
+    rises = np.diff(values[order]) > _ALIKE * np.abs(values[order][1:])
+    levels = np.empty(len(values), int)
+    levels[order] = np.concatenate([[0], np.cumsum(rises)])
+    return levels.tolist()
+
+
+def _repeats(found: Sequence[tuple[Run, Run]], file: str) -> Iterator[Defect]:
+    return of_rows(
+        lambda i: f"repeats the parameters of run {found[i][0].name} in row {found[i][0].row}",
+        [run.row for _, run in found],
+        lambda i: found[i][1].name,
+        file=file,
+        field="run",
+    )

@@ -15,7 +15,7 @@ import numpy as np
 from restitution.calibration.reading.observations import Observations
 from restitution.calibration.reading.reading import Reading
 from restitution.doubts import Doubt, of_conditions, of_copies, of_impacts
-from restitution.errors import Defect, InputError
+from restitution.errors import Defect, InputError, of_rows
 from restitution.stokes import H_FILM, film_edge
 
 if TYPE_CHECKING:
@@ -48,20 +48,20 @@ class TableCheck:
     ):
         self.table, self.how, self.file, self.rows = table, how, file, rows
         self.defects = list(form_defects)
-        self._named = {(d.row, d.field) for d in self.defects}
+        self._named: dict[str | None, set[int | None]] = {}
+        for d in self.defects:
+            self._named.setdefault(d.field, set()).update((d.row, *d.others))
         # Where a column is misnamed, its empty cells are no further defects.
         self._complete = not any(d.row == 1 for d in self.defects)
 
-    def _add(self, rule: str, i: int | None, name: str | None, value: str | None = None) -> None:
-        row = None if i is None else int(self.rows[i])
-        own = None if name is None else self.how.columns.get(name, name)
-        if row is None or (row, own) not in self._named:
-            self._named.add((row, own))
-            self.defects.append(Defect(rule, file=self.file, row=row, field=own, value=value))
-
-    def _add_all(self, rule: str, where: np.ndarray, name: str, values: Any = None) -> None:
-        for i in np.flatnonzero(where):
-            self._add(rule, i, name, None if values is None else f"{values[i]:g}")
+    def _add_all(self, rule: str, where: Iterable[int], name: str, values: Any = None) -> None:
+        """The cells of a column at these places, but those that are named already."""
+        own = self.how.columns.get(name, name)
+        named = self._named.setdefault(own, set())
+        new = [(i, row) for i in where if (row := int(self.rows[i])) not in named]
+        named.update(row for _, row in new)
+        shown = None if values is None else lambda k: _shown(values[new[k][0]])
+        self.defects += of_rows(rule, [row for _, row in new], shown, file=self.file, field=own)
 
     def definition(self, column: str, given: Any, option: str) -> Any:
         """The one value of a column that states a definition, or the caller's; None where nobody states it."""
@@ -74,11 +74,12 @@ class TableCheck:
             self.defects.append(
                 Defect(rule, file=self.file, row=int(self.rows[at]), field=option, value=str(given))
             )
-        for i, value in stated.items():
-            if value != first:
-                rule = f"differs from {first!r} in row {self.rows[at]}: one file has one definition; split it"
-                self._add(rule, i, column, value)
-        empty = self.table[column].isna().to_numpy(bool)
+        other = np.flatnonzero(
+            self.table[column].notna().to_numpy(bool) & (self.table[column] != first).to_numpy(bool)
+        )
+        rule = f"differs from {first!r} in row {self.rows[at]}: one file has one definition; split it"
+        self._add_all(rule, other, column, self.table[column])
+        empty = np.flatnonzero(self.table[column].isna())
         self._add_all(f"is empty here and {first!r} in other rows: give it in all", empty, column)
         return first
 
@@ -86,7 +87,7 @@ class TableCheck:
         """The definition of the impact speed; that nobody states it is a defect."""
         speed = self.definition("speed_definition", self.how.speed, "--speed")
         if speed is None:
-            self._add(NO_SPEED, None, None)
+            self.defects.append(Defect(NO_SPEED, file=self.file))
         return speed
 
     def edge(self) -> float:
@@ -100,16 +101,16 @@ class TableCheck:
         key = self.definition("stokes_convention", self.how.stokes, "--stokes")
         given = self.table["stokes"].notna().to_numpy(bool)
         if given.any() and key is None:
-            self._add(_NO_STOKES, int(np.argmax(given)), "stokes")
+            self._add_all(_NO_STOKES, [int(np.argmax(given))], "stokes")
         speed = self.table["impact_speed_m_s"].to_numpy(float)
         if self._complete:
             rule = "is not given, nor the impact_speed_m_s and conditions that it would follow from"
-            self._add_all(rule, ~given & np.isnan(speed), "stokes")
+            self._add_all(rule, np.flatnonzero(~given & np.isnan(speed)), "stokes")
             without = np.array([c is None for c in conditions], bool)
             rule = (
                 f"needs fluid and sphere to become a Stokes number: {', '.join(CONDITIONS)}, or --conditions FILE"
             )
-            self._add_all(rule, ~given & np.isfinite(speed) & without, "impact_speed_m_s", speed)
+            self._add_all(rule, np.flatnonzero(~given & np.isfinite(speed) & without), "impact_speed_m_s", speed)
         return key or "st"
 
     def errors(self) -> None:
@@ -120,18 +121,18 @@ class TableCheck:
         for name in _SIGMAS:
             values = self.table[name].to_numpy(float)
             rule = "must be positive; leave the cell empty where it is not known"
-            self._add_all(rule, (values <= 0) | np.isinf(values), name, values)
+            self._add_all(rule, np.flatnonzero((values <= 0) | np.isinf(values)), name, values)
 
     def restitution(self, e: np.ndarray, none: np.ndarray) -> None:
         """Each impact has an e_eff, or an outcome without one; its value is physical unless that is waived."""
         if self._complete:
             rule = "is empty: give it, or both speeds, or an outcome of no_rebound (a limit, not a zero)"
-            self._add_all(rule, np.isnan(e) & ~none, "e_eff")
+            self._add_all(rule, np.flatnonzero(np.isnan(e) & ~none), "e_eff")
         seen = self.table["e_eff"].to_numpy(float)
         rule = "is given for an impact without a rebound: leave it empty and give the limit as e_eff_upper"
-        self._add_all(rule, none & np.isfinite(seen) & (seen != 0), "e_eff", seen)
+        self._add_all(rule, np.flatnonzero(none & np.isfinite(seen) & (seen != 0)), "e_eff", seen)
         if not self.how.unphysical:
-            self._add_all(_UNPHYSICAL, _outside(e) & ~none, "e_eff", e)
+            self._add_all(_UNPHYSICAL, np.flatnonzero(_outside(e) & ~none), "e_eff", e)
 
 
 def check_physical(o: Observations, how: Reading) -> Observations:
@@ -160,6 +161,10 @@ def doubts_about(o: Observations, e_dry: float | None = None) -> tuple[Doubt, ..
 
 _TYPICAL_E_DRY = 0.97
 """Of steel and glass, where nobody states it."""
+
+
+def _shown(value: object) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def _outside(e: np.ndarray) -> np.ndarray:
