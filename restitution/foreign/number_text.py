@@ -47,16 +47,11 @@ def plain(cell: str, decimal: Decimal = ".") -> str:
     """The cell as Python writes numbers; as it is where it is no number."""
     if NUMBER.fullmatch(cell):
         return cell  # most are
-<<<<<<< HEAD
     if (time := seconds(cell)) is not None:
         return time
-    text = cell.translate(_TYPOGRAPHIC).strip()
-    text = _EXPONENT.sub(r"\1e\2", text) if _EXPONENT.fullmatch(text) else text
-=======
     text = _ascii(cell).strip()
     if _EXPONENT.fullmatch(text):
         text = _EXPONENT.sub(r"\1e\2", text)
->>>>>>> 2fffb09 (Floods of bad cells and columns are refused at once: columns read whole, one defect a cause, a table read once)
     if decimal == "," and _COMMA.fullmatch(text):
         text = text.replace(",", ".")
     return text if text != cell and NUMBER.fullmatch(text) else cell
