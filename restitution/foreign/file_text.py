@@ -59,8 +59,7 @@ def lines_of(text: str, file: str) -> list[str]:
     if kind := _MARKUP.get(text.lstrip()[:1]):
         digitised = "; of a project of WebPlotDigitizer only fit and compare take impacts" * (kind == "JSON")
         raise InputError(Defect(f"is {kind}, no table; export the table as CSV{digitised}", file=file))
-    lines = text.split("
-")
+    lines = text.split("\n")
     check_widths(lines, file)
     return lines
 
