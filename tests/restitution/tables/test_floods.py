@@ -33,7 +33,9 @@ FLOODS = {
     "columns": (TRACK, ",".join(f"c{k}" for k in range(200_000)) + "\n", "a.csv:1: is a line of"),
     "impacts": (
         # 1e5 of them take 330 MB.
-        ("data", "validate", "a.csv"), rows(IMPACTS, "a,far,st,{0}1,x{0},0.97,b{0},-1\n", 50_000), "49999 more rows",
+        ("data", "validate", "a.csv"),
+        rows(IMPACTS, "a,far,st,{0}1,x{0},0.97,b{0},-1\n", 50_000),
+        "49999 more rows",
     ),
 }  # fmt: skip
 
