@@ -128,7 +128,7 @@ def score(
         track = integrated(track, found)
         own.append("velocities: the moment of a contact is known to a step, and times between contacts to that")
     else:
-        track, own = from_rest(track, case.conditions.sphere.diameter)
+        track, own = from_rest(track, case.conditions.sphere.diameter, stretched=first_s is not None)
     if first_s is not None and not track.time_s[0] <= first_s <= track.time_s[-1]:
         rule = f"is outside the trajectory, {track.time_s[0]:g} to {track.time_s[-1]:g} s"
         raise InputError(Defect(rule, file=name, field="--first-contact", value=f"{first_s:g} s"))
@@ -143,12 +143,15 @@ def score(
     return Scored(name, case, judged, bounces, [*notes, *found.notes, *own, *doubts])
 
 
-def from_rest(track: Track, diameter: float) -> tuple[Track, list[str]]:
-    """The gaps from where the sphere rests, where that is no matter of noise; what else their level says."""
+def from_rest(track: Track, diameter: float, stretched: bool = False) -> tuple[Track, list[str]]:
+    """The gaps from where the sphere rests, where that is no matter of noise; what else their level says.
+
+    A sphere whose contact is known to be ``stretched`` in time may go into the wall.
+    """
     level, deepest = contacts(track).level or 0.0, float(np.min(track.value))
     if abs(level) > _AT_REST * diameter:
         return replace(track, value=track.value - level), []
-    if deepest < -_AT_REST * diameter:
+    if deepest < -_AT_REST * diameter and not stretched:
         return track, [
             f"doubt: it goes {-deepest / diameter:.2g} d into the wall: where its contact is stretched in time, "
             "times count from its end (--first-contact S); else the wall is lower than stated (--wall)"
