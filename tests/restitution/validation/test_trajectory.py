@@ -97,8 +97,8 @@ def test_gaps_count_from_where_the_sphere_rests():
 def test_a_sphere_deep_in_the_wall_is_doubted():
     time, gap, *_ = flown()
     deep = Track(time, gap - 3e-4, "gap", 1e-6)
-    assert any("into the wall" in note for note in score("g", deep, CASE).notes)
-    assert not any("into the wall" in note for note in score("g", deep, CASE, first_s=0.0).notes)
+    assert any("--first-contact" in note for note in score("g", deep, CASE).notes)
+    assert not any("--first-contact" in note for note in score("g", deep, CASE, first_s=0.0).notes)
 
 
 @pytest.mark.parametrize(
