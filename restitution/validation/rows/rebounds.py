@@ -40,10 +40,10 @@ _THIRD = "the third bounce, St 47 to 25, is too strong whatever the contact: e 0
 _TENSION = "the film cavitates at the pressure of the air; a tension chosen on this record would meet it, none is"
 _STRETCHED = "the film acts for longer beside a contact stretched over many steps than beside one that takes none"
 _WEAK = "below St 30 the law with K of the other records is weaker than the rebounds of this one"
-_TOO_FAR = "on grids fine enough the law with K of the other records flies 2.6 % too far"
+_TOO_FAR = "on grids fine enough the law with K of the other records flies 3 % too far"
 _LAW_ON_FINE = {
     **dict.fromkeys(("apex 1, mm", "flight 1, ms", "flight 2, ms", "rms, d"), _TOO_FAR),
-    **dict.fromkeys(("apex 3, mm", "flight 3, ms"), _THIRD),
+    "apex 3, mm": _THIRD,
 }
 _CREEPING = (
     "2.7 % slow at Re 1.5 with all rates that leave walls in their place (two relaxation times: 0.920, at 7.5 "

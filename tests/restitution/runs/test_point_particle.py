@@ -162,8 +162,9 @@ def test_a_case_that_cannot_be_run_is_one_line_and_status_2(old, new, field, tmp
     assert old in CASE
     (tmp_path / "mine.toml").write_text(CASE.replace(old, new, 1))
     assert main(["bounce", str(tmp_path / "mine.toml"), "--out", str(tmp_path / "out")]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+    *doubts, line = capsys.readouterr().err.splitlines()
     assert f"mine.toml: {field}" in line
+    assert len(doubts) == ("diameter" in field)  # of 3 m, which is mm, or is it?
     assert not (tmp_path / "out").exists()
 
 
