@@ -29,6 +29,7 @@ AREAS = (
     Area("kills of report fig1 at random", None, kills.at_random(kills.FIG1, 90), slow=True),
     Area("kills of report fig2 at random", None, kills.at_random(kills.FIG2, 90), slow=True),
     Area("kills of validate at random", None, kills.at_random(kills.VALIDATE, 30), slow=True),
+    Area("kills of sweep at random", None, sweeps.stops, slow=True),
     Area("disk full, limits, kinds of output", (41, 40, 1, 0, 0, 0), places.full_disks),
     Area("kernel cache, thread variables", (19, 14, 2, 0, 2, 1), places.threads),
     Area("two processes on one --out, cold cache", (3, 2, 0, 0, 1, 0), kills.at_once),

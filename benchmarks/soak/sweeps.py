@@ -1,14 +1,17 @@
-"""Files of sweeps, spoiled by hand and at random."""
+"""Sweeps stopped at any moment; their files, spoiled by hand and at random."""
 
 from __future__ import annotations
 
 import re
+import signal
 from collections.abc import Iterator
 from itertools import product
 from random import Random
 
 from benchmarks.soak import inputs
-from benchmarks.soak.outcome import Attempt, either
+from benchmarks.soak.kills import nothing_left
+from benchmarks.soak.outcome import CLEAN, Attempt, Outcome, broken, either, sound
+from benchmarks.soak.running import Workshop
 from benchmarks.soak.trying import may, names, tried
 
 SWEEP = """\
@@ -45,3 +48,35 @@ def sweeps(random: Random) -> Iterator[Attempt]:
         yield tried("sweep at random", {"case.toml": inputs.CASE, "sweep.toml": text}, command, may())
         case = inputs.spoiled(inputs.CASE, random)
         yield tried("sweep of a case at random", {"case.toml": case, "sweep.toml": SWEEP}, command, may())
+
+
+MADE = ("sweep", "sweep.toml", "--out", "out", "--processes", "2")
+
+
+def stops(random: Random) -> Iterator[Attempt]:
+    """A sweep of eight runs stopped once or twice at random, then called again: the table of one that was not."""
+    whole: list[bytes] = []
+    while True:
+        signals = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
+        chain = [(random.uniform(0.5, 9), random.choice(signals)) for _ in range(random.randint(1, 2))]
+        name = "sweep stopped by " + ", ".join(f"{n.name} at {t:.1f} s" for t, n in chain)
+        yield Attempt(name, lambda shop, chain=chain: stopped(shop, chain, whole))
+
+
+def stopped(shop: Workshop, chain: list, whole: list[bytes]) -> Outcome:
+    """One chain of stops, and the call that ends the sweep; ``whole`` keeps the table of a sweep never stopped."""
+    shop.write("case.toml", inputs.CASE)
+    shop.write("sweep.toml", SWEEP.replace("runs = 3", "runs = 8"))
+    if not whole:
+        if (outcome := sound(shop.process(*MADE[:3], "whole", *MADE[4:]))).kind != "clean":
+            return outcome
+        whole.append((shop.folder / "whole" / "impacts.csv").read_bytes())
+    for after, number in chain:
+        done = shop.stop(shop.start(*MADE), after, number)
+        if done.status not in (0, 130, -number) or "Traceback" in done.err:
+            return broken(done) or Outcome("unclear", f"status {done.status}: {done.err[-200:]!r}")
+    if (outcome := sound(shop.process(*MADE))).kind != "clean":
+        return outcome
+    if (shop.folder / "out" / "impacts.csv").read_bytes() != whole[0]:
+        return Outcome("silent", "another table of impacts after the sweep was stopped")
+    return nothing_left(shop.folder / "out") or CLEAN
