@@ -4,7 +4,7 @@
 1``) must see the sweep's folder under the same path and have the same program. ``slurm:FILE`` names a TOML file
 with the keywords of :class:`dask_jobqueue.SLURMCluster`, and ``jobs``, how many of them. Each job had better end
 its workers before its walltime does (``worker_extra_args = ["--lifetime", "55m", "--lifetime-stagger", "4m"]``); a
-run whose worker is gone goes on from its checkpoint on another one.
+run whose worker is gone goes on from its checkpoint on another one, and a job that is over is asked for anew.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import inspect
 import logging
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
@@ -25,6 +26,7 @@ from restitution.inputs import read_toml
 
 if TYPE_CHECKING:
     from dask_jobqueue import SLURMCluster
+    from dask_jobqueue.core import JobQueueCluster
     from distributed import Client
 
 SLURM = "slurm:"
@@ -33,6 +35,8 @@ _SECONDS_TO_ANSWER = 15
 _LOUD = ("distributed", "tornado", "asyncio")
 _AHEAD = 2
 """Runs that each thread of a worker has, one of them waiting."""
+_SECONDS_GONE = 30.0
+"""After which a job none of whose workers is there any more is over; a scheduler misses one for moments too."""
 _OURS = {"scheduler", "self", "job_cls", "loop", "asynchronous", "n_workers", "scheduler_cls", "job_kwargs"}
 """Keywords that are not the user's to give; ``jobs`` is ``n_workers`` in the words of SLURM."""
 
@@ -59,7 +63,8 @@ def dask_engine(scheduler: str) -> Iterator[Engine]:
         with slurm_cluster(scheduler.removeprefix(SLURM)) as (cluster, jobs):
             cluster.scale(jobs=jobs)
             with Client(cluster) as client:
-                yield _engine(client, f"{jobs} jobs of SLURM, scheduler at {cluster.scheduler_address}")
+                told = f"{jobs} jobs of SLURM, scheduler at {cluster.scheduler_address}"
+                yield _engine(client, told, Renewal(cluster, jobs))
         return
     try:
         client = Client(scheduler, timeout=_SECONDS_TO_ANSWER)
@@ -118,7 +123,35 @@ def keywords() -> set[str]:
     return found - _OURS
 
 
-def _engine(client: Client, told: str) -> Engine:
+class Renewal:
+    """Asks for a job anew once all its workers have come and gone, as they do at the end of its walltime.
+
+    Of itself Dask does that for jobs of one process alone, where it scales by load (``adapt``), and never for a
+    fixed number of jobs (dask-jobqueue, issue 611): a sweep longer than a walltime would wait for ever.
+    """
+
+    def __init__(self, cluster: JobQueueCluster, jobs: int):
+        self.cluster, self.jobs = cluster, jobs
+        self._seen: dict[object, float] = {}
+        """When a worker of each job was there last."""
+
+    def __call__(self) -> None:
+        """Look which jobs are over; called now and then."""
+        now = time.monotonic()
+        there = {str(w["name"]) for w in self.cluster.scheduler_info["workers"].values()}
+        jobs = dict(self.cluster.worker_spec)
+        for name, spec in jobs.items():
+            if there & {f"{name}{suffix}" for suffix in spec.get("group", [""])}:
+                self._seen[name] = now
+        over = [name for name in jobs if now - self._seen.get(name, now) > _SECONDS_GONE]
+        if over:
+            for name in over:
+                del self._seen[name]
+            self.cluster.sync(self.cluster.scale_down, over)
+            self.cluster.scale(jobs=self.jobs)
+
+
+def _engine(client: Client, told: str, renew: Callable[[], None] = lambda: None) -> Engine:
     address = client.scheduler.address if client.scheduler is not None else "its address"
 
     def at_once() -> int:
@@ -128,6 +161,7 @@ def _engine(client: Client, told: str) -> Engine:
 
     def lost() -> str | None:
         if client.status == "running":
+            renew()
             return None
         return (
             f"the scheduler at {address} is gone: what is finished is kept; start it again and give the same "

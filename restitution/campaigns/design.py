@@ -11,6 +11,7 @@ design               runs
 
 Points of the last two are those of :mod:`scipy.stats.qmc` for the stated ``seed``. Every key of a case can be
 varied, by its dotted name; ``St`` too, rho_p v d/(9 mu) at the speed v of the drive, through viscosity or speed.
+Of several bases each has all points, such as cases of several records for a solver's calibration.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ class Range(Record):
 class SweepFile(Record):
     """The content of a sweep's file."""
 
-    base: str
+    base: str | Annotated[tuple[str, ...], Field(min_length=1)]
     design: Literal["grid", "list", "latin hypercube", "sobol"] = "grid"
     models: tuple[Literal["resolved", "point particle"], ...] = (RESOLVED,)
     case: dict[str, Any] = Field(default_factory=dict)
@@ -94,7 +95,7 @@ class Varied:
 
 
 class Sweep:
-    """A sweep's file with its base case; :meth:`cases` are the runs that it asks for."""
+    """A sweep's file with its base case, or several; :meth:`cases` are the runs that it asks for."""
 
     def __init__(self, path: str | Path):
         self.path, self.file = Path(path), str(path)
@@ -102,20 +103,24 @@ class Sweep:
             self.asked = SweepFile.model_validate(read_toml(path))
         except ValidationError as error:
             raise InputError(*defects_of(error, self.file)) from None
-        beside = self.path.parent / f"{self.asked.base.removesuffix('.toml')}.toml"
-        base = beside if beside.is_file() and beside.resolve() != self.path.resolve() else self.asked.base
+        bases = (self.asked.base,) if isinstance(self.asked.base, str) else self.asked.base
+        self.contents = {name: self._content(name) for name in bases}
+        self.varied = _ways(self.asked.vary, self.file)
+        """What is given to each key that varies, by its dotted name."""
+
+    def _content(self, name: str) -> dict[str, Any]:
+        """A base with what all runs have in place of its own."""
+        beside = self.path.parent / f"{name.removesuffix('.toml')}.toml"
+        base = beside if beside.is_file() and beside.resolve() != self.path.resolve() else name
         try:
             content = content_of(find(base))
         except InputError as error:
             if error.defects[0].file != str(base):
                 raise
-            raise InputError(
-                Defect(error.defects[0].rule, file=self.file, field="base", value=self.asked.base)
-            ) from None
-        self.content = over(content, self.asked.case)
-        case_of(self.content, self.file, runnable=False)
-        self.varied = _ways(self.asked.vary, self.file)
-        """What is given to each key that varies, by its dotted name."""
+            raise InputError(Defect(error.defects[0].rule, file=self.file, field="base", value=name)) from None
+        content = over(content, self.asked.case)
+        case_of(content, self.file, runnable=False)
+        return content
 
     @property
     def columns(self) -> list[str]:
@@ -130,22 +135,29 @@ class Sweep:
         """The runs; raises :class:`InputError` with every cause for which one cannot be made."""
         defects: dict[str, Defect] = {}
         columns, found = self.columns, []
-        for change in self._changes():
+        for (base, content), change in itertools.product(self.contents.items(), self._changes()):
             try:
-                case = self._changed(change)
+                case = self._changed(content, change)
             except InputError as error:
                 defects |= {str(d): d for d in error.defects}
                 continue
             parameters = {name: change[STOKES] if name == STOKES else value_of(case, name) for name in columns}
-            found += [Varied(case, model, parameters) for model in self.asked.models]
+            named = {"base": base} if self._named_apart else {}
+            found += [Varied(case, model, named | parameters) for model in self.asked.models]
         if defects:
             raise InputError(*defects.values())
         return iter(found)
 
-    def _changed(self, change: Mapping[str, Any]) -> Case:
-        """The base with dotted keys changed."""
+    @property
+    def _named_apart(self) -> bool:
+        """Whether several bases are told apart by nothing else: by no record of their own."""
+        records = {content.get("record") for content in self.contents.values()}
+        return len(records) < len(self.contents)
+
+    def _changed(self, content: dict[str, Any], change: Mapping[str, Any]) -> Case:
+        """A base with dotted keys changed."""
         plain = {name: value for name, value in change.items() if name != STOKES}
-        content = over(self.content, _nested(plain))
+        content = over(content, _nested(plain))
         if STOKES not in change:
             return case_of(content, self.file)
         case = case_of(content, self.file, runnable=False)
@@ -222,7 +234,8 @@ class Sweep:
     def _in_si(self, name: str, value: float | str) -> Any:
         if name == STOKES:
             return value
-        return value_of(case_of(over(self.content, _nested({name: value})), self.file, runnable=False), name)
+        content = next(iter(self.contents.values()))
+        return value_of(case_of(over(content, _nested({name: value})), self.file, runnable=False), name)
 
     def _examples(self) -> Iterator[dict[str, Any]]:
         """For each key that varies what it may be, for the names of the columns."""

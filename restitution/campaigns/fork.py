@@ -13,6 +13,7 @@ from pathlib import Path
 
 from restitution.campaigns.plan import Planned
 from restitution.campaigns.run import Approach
+from restitution.errors import InputError
 from restitution.runs.record import RESOLVED
 
 APPROACHES = "approaches"
@@ -43,10 +44,11 @@ def forks(
     alone: list[Planned] = []
     groups: dict[str, list[Planned]] = {}
     for run in runs:
-        if run.model == RESOLVED and run.case.numerics is not None:
-            groups.setdefault(_key(run), []).append(run)
-        else:
+        key = _key(run)
+        if key is None:
             alone.append(run)
+        else:
+            groups.setdefault(key, []).append(run)
     found = []
     for key, group in groups.items():
         if len(group) == 1:
@@ -60,10 +62,16 @@ def forks(
     return found, alone
 
 
-def _key(run: Planned) -> str:
+def _key(run: Planned) -> str | None:
+    """Of a run's approach; None where it has none, or the solver refuses the case, which the run will say."""
     from restitution.runs.validity.key import approach_key
 
-    return approach_key(run.case)
+    if run.model != RESOLVED or run.case.numerics is None:
+        return None
+    try:
+        return approach_key(run.case)
+    except InputError:
+        return None
 
 
 def _edge(run: Planned) -> float:

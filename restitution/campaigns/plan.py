@@ -39,6 +39,8 @@ class Planned:
     run: str
     model: str
     parameters: dict[str, Any]
+    record: str | None = None
+    """The measured record that it simulates."""
     case: Case | None = None
 
 
@@ -50,7 +52,7 @@ def planned(varied: Iterable[Varied], show: Callable[[str], None] | None = None)
         count += 1
         name = f"r{_key(one.case, one.model)}"
         if name not in found:
-            found[name] = Planned(name, one.model, one.parameters, _plain(one.case, name))
+            found[name] = Planned(name, one.model, one.parameters, one.case.record, _plain(one.case, name))
     if show is not None and count > len(found):
         show(f"{count - len(found)} of {count} runs are the same as others: each is made once")
     if show is not None:
@@ -61,10 +63,12 @@ def planned(varied: Iterable[Varied], show: Callable[[str], None] | None = None)
 
 def write_plan(folder: Path, runs: Iterable[Planned]) -> None:
     """Write ``plan.jsonl``, the folder made if need be."""
-    lines = (
-        json.dumps({"run": r.run, "model": r.model, "parameters": r.parameters}, allow_nan=False) for r in runs
-    )
-    write_folder(folder, {FILE: "".join(f"{line}\n" for line in lines)})
+    lines = []
+    for r in runs:
+        record = {} if r.record is None else {"record": r.record}
+        told = {"run": r.run, "model": r.model, "parameters": r.parameters, **record}
+        lines.append(f"{json.dumps(told, allow_nan=False)}\n")
+    write_folder(folder, {FILE: "".join(lines)})
 
 
 def read_plan(folder: Path) -> list[Planned]:

@@ -3,8 +3,9 @@
 ===============  ============================================================================================
 file             content
 ===============  ============================================================================================
-``runs.csv``     ``run``, ``state``, ``model``, a column a key varied, in SI, ``track``, where its trajectory
-                 lies from the sweep's folder, ``seconds``, ``attempts``, ``message``
+``runs.csv``     ``run``, ``state``, ``model``, ``record`` where one is simulated, a column a key varied, in SI,
+                 ``track``, where its trajectory lies from the sweep's folder, ``seconds``, ``attempts``,
+                 ``message``
 ``impacts.csv``  the impacts under one definition of speed, ``record`` being the run: for ``restitution fit``
 ===============  ============================================================================================
 
@@ -42,8 +43,10 @@ def write_tables(folder: Path, speed: str = Speed.FAR) -> None:
     """
     runs, manifest = read_plan(folder), Manifest(folder)
     names = list(dict.fromkeys(name for run in runs for name in run.parameters))
-    headings = ["run", "state", "model", *names, "track", "seconds", "attempts", "message"]
-    rows = [_row(run, names, manifest) for run in runs]
+    of_records = any(run.record is not None for run in runs)
+    own = ["run", "state", "model", *(["record"] if of_records else [])]
+    headings = [*own, *names, "track", "seconds", "attempts", "message"]
+    rows = [_row(run, names, manifest, of_records) for run in runs]
     columns = list(datasets.schema("impact").columns)
     impacts = [
         [row.get(name, "") for name in columns]
@@ -67,7 +70,8 @@ def runs_of(folder: Path) -> pd.DataFrame:
     """The table of runs."""
     import pandas as pd
 
-    return pd.read_csv(folder / TABLE, dtype={"run": str, "state": str, "message": str, "track": str})
+    words = dict.fromkeys(("run", "state", "record", "message", "track"), str)
+    return pd.read_csv(folder / TABLE, dtype=words)
 
 
 def impacts_of(folder: Path) -> pd.DataFrame:
@@ -79,13 +83,14 @@ def impacts_of(folder: Path) -> pd.DataFrame:
     return impacts.rename(columns={"record": "run"}).merge(runs, on="run", suffixes=("", "_of_case"))
 
 
-def _row(run: Planned, names: Sequence[str], manifest: Manifest) -> list[Any]:
+def _row(run: Planned, names: Sequence[str], manifest: Manifest, of_records: bool) -> list[Any]:
     standing = manifest.of(run.run)
     finished = standing.state == FINISHED
     return [
         run.run,
         standing.shown,
         run.model,
+        *([run.record] if of_records else []),
         *(_cell(run.parameters.get(name)) for name in names),
         f"{RUNS}/{run.run}/trajectory.csv" if finished else "",
         round(standing.seconds, 3) if finished else None,

@@ -8,6 +8,7 @@ column                  content
 ``record``              the measured record that it simulates: a shipped one by name, or a file; may be left out
                         where all runs are of one
 ``state``               may be left out; runs that are not ``finished`` take no part
+``seconds``, ...        what a sweep writes of its runs beside (``attempts``, ``message``): no parameters
 every other             a parameter: numbers are calibrated, texts (a form of film) and ``cells_per_diameter``
                         divide the runs into groups, each calibrated for itself
 ======================  ==========================================================================================
@@ -31,7 +32,7 @@ from restitution.tables.csv_text import CsvText
 from restitution.units import NUMBER
 
 FILE = "runs.csv"
-OWN = ("run", "state", "track", "record")
+OWN = ("run", "state", "track", "record", "seconds", "attempts", "message")
 CELLS = "cells_per_diameter"
 FINISHED = "finished"
 _ALIKE = 1e-9

@@ -53,7 +53,7 @@ class ResolvedRun:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", lbm.OutsideRangeWarning)
             try:
-                self.setup = set_up(case)
+                self.setup = set_up(case, file)
                 self.simulation, self.spheres = self.setup.build()
             except lbm.InputError as error:
                 raise InputError(Defect(str(error), file=file or case.name, field="numerics")) from None

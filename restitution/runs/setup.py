@@ -96,11 +96,18 @@ class Setup:
         return simulation, spheres
 
 
-def set_up(case: Case) -> Setup:
-    """What the solver is told of ``case``.
+def set_up(case: Case, file: str = "") -> Setup:
+    """What the solver is told of ``case``, which ``file`` has.
 
-    Raises :class:`lbm.InputError` for numbers that it refuses; warns of those it doubts.
+    Raises :class:`InputError` for numbers that it refuses; warns of those it doubts.
     """
+    try:
+        return _set_up(case)
+    except lbm.InputError as error:
+        raise InputError(Defect(str(error), file=file or case.name, field="numerics")) from None
+
+
+def _set_up(case: Case) -> Setup:
     n, flow, quarter = case.numerics, _scales(case), case.quartered
     wide = round(n.width_d * flow.length / (2 if quarter else 1))
     high = round(n.height_d * flow.length)

@@ -5,7 +5,8 @@ import signal
 
 import pytest
 
-from restitution.campaigns.cluster import keywords
+from restitution.campaigns import cluster as own
+from restitution.campaigns.cluster import Renewal, keywords
 from tests import sweeps
 
 pytest.importorskip("distributed")
@@ -106,3 +107,24 @@ def test_the_script_of_a_job_has_what_the_file_says(tmp_path):
     interrupt = signal.getsignal(signal.SIGINT)
     assert {"queue", "account", "walltime", "cores", "memory", "processes", "worker_extra_args"} <= keywords()
     assert signal.getsignal(signal.SIGINT) is interrupt
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # dask-jobqueue's own, of its processes
+def test_a_job_that_is_over_is_asked_for_anew(monkeypatch):
+    """Jobs of two processes each, as jobs of SLURM are, but on this machine: the end of a walltime is a kill."""
+    from dask_jobqueue.local import LocalCluster
+
+    monkeypatch.setattr(own, "_SECONDS_GONE", 0.5)
+    here = {"host": "127.0.0.1", "dashboard_address": None}
+    with LocalCluster(cores=2, processes=2, memory="1GB", scheduler_options=here) as cluster:
+        renew = Renewal(cluster, 1)
+
+        def addresses():
+            renew()
+            return set(cluster.scheduler_info["workers"])
+
+        cluster.scale(jobs=1)
+        sweeps.until(lambda: len(addresses()) == 2)
+        before = addresses()
+        cluster.sync(cluster.scheduler_comm.retire_workers, workers=list(before))
+        sweeps.until(lambda: len(addresses() - before) == 2)

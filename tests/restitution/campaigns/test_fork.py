@@ -93,3 +93,11 @@ def test_a_sphere_released_within_the_film_has_no_approach(tmp_path):
     case = shared(tmp_path)[0][0].case
     assert not run_approach(case, 0.5, tmp_path / "approach")
     assert not (tmp_path / "approach" / APPROACH).exists()
+
+
+def test_a_case_that_the_solver_refuses_is_set_apart(tmp_path):
+    rest = "[vary]\nfluid.viscosity = [0.01, 1e-7]\nsphere.e_dry = [0.8, 0.9]\n"
+    runs = planned(Sweep(sweeps.tiny(tmp_path, rest=rest)).cases())
+    found, alone = forks(runs, tmp_path, "", 1)
+    assert [[r.case.fluid.viscosity for r in fork.runs] for fork in found] == [[0.01, 0.01]]
+    assert [r.case.fluid.viscosity for r in alone] == [1e-7, 1e-7]

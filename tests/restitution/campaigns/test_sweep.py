@@ -20,6 +20,7 @@ from restitution.campaigns.run import ELSEWHERE, STOP, Task, perform
 from restitution.campaigns.sweep import sweep
 from restitution.campaigns.table import impacts_of, runs_of
 from restitution.cli import main
+from restitution.emulation import read_runs
 from restitution.errors import InputError, StoppedError
 from restitution.locks import sole_writer
 from restitution.runs.simulate import CHECKPOINT
@@ -102,6 +103,34 @@ def test_runs_are_known_by_their_content(tmp_path):
     assert {r.run for r in few} < {r.run for r in many}
     assert len(many) == 8
     assert said == ["2 of 10 runs are the same as others: each is made once"]
+
+
+def test_each_of_several_bases_has_all_points_and_its_record(tmp_path):
+    text = """base = ["gondret_st152_10", "li_drop1"]
+models = ["point particle"]
+design = "latin hypercube"
+runs = 4
+[vary]
+film.floor = { from = 1e-7, to = 1e-5, scale = "log" }
+"""
+    file, out = sweeps.write(tmp_path, text), tmp_path / "out"
+    in_threads(file, out)
+    runs = runs_of(out)
+    records = ["gondret2002_st152", "li2012_drop1"]
+    assert list(runs.record) == [r for r in records for _ in range(4)]
+    floors = [list(runs["film.floor"][runs.record == r]) for r in records]
+    assert floors[0] == floors[1]
+    assert len(set(floors[0])) == 4
+    group = read_runs(out)[0]
+    assert group.parameters == ("film.floor",)
+    assert group.records == tuple(records)
+
+
+def test_bases_of_one_record_are_told_apart_by_name(tmp_path):
+    bases = ["gondret_st152_10", "gondret_st152_16"]
+    found = list(Sweep(sweeps.write(tmp_path, f"base = {bases}\n[vary]\nsphere.e_dry = [0.8, 0.9]\n")).cases())
+    assert [c.parameters for c in found] == [{"base": b, "sphere.e_dry": e} for b in bases for e in (0.8, 0.9)]
+    assert [c.case.numerics.cells_per_diameter for c in found] == [10, 10, 16, 16]
 
 
 def in_threads(file: Path, out: Path, **more) -> Manifest:

@@ -178,10 +178,11 @@ def test_lattice_speed_out_of_range_says_which_knob(tmp_path, capsys):
     (tmp_path / "fast.toml").write_text(
         GOOD.replace("cells_per_diameter = 10", "cells_per_diameter = 10\nlattice_speed = 0.4")
     )
-    assert main(["simulate", str(tmp_path / "fast.toml"), "--out", str(tmp_path / "out")]) == 2
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1
-    assert "lattice_speed" in lines[0]
+    for command in (("simulate", "--out", str(tmp_path / "out")), ("cases", "show")):
+        assert main([*command, str(tmp_path / "fast.toml")]) == 2
+        lines = capsys.readouterr().err.splitlines()
+        assert len(lines) == 1
+        assert "lattice_speed" in lines[0]
     assert not (tmp_path / "out").exists()
 
 
