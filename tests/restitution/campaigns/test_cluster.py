@@ -109,7 +109,7 @@ def test_the_script_of_a_job_has_what_the_file_says(tmp_path):
     assert signal.getsignal(signal.SIGINT) is interrupt
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # dask-jobqueue's own, of its processes
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # dask-jobqueue's, of its jobs
 def test_a_job_that_is_over_is_asked_for_anew(monkeypatch):
     """Jobs of two processes each, as jobs of SLURM are, but on this machine: the end of a walltime is a kill."""
     from dask_jobqueue.local import LocalCluster

@@ -278,7 +278,7 @@ def test_a_killed_process_costs_its_own_run_alone(tmp_path):
 
 def test_an_interrupt_leaves_checkpoints_from_which_two_drivers_go_on(tmp_path):
     out, file = tmp_path / "out", sweeps.tiny(tmp_path, LONG)
-    for seconds in (1.0, 2.0, 4.0, 8.0):  # before its first step, which loads the kernels, a run has nothing to leave
+    for seconds in (1.0, 2.0, 4.0, 8.0):  # before its first step, at which kernels load, a run leaves nothing
         with sweeps.start(file, "--out", out, "--processes", 2, "--no-forks") as driver:
             sweeps.until(lambda: sweeps.under_way(out))
             time.sleep(seconds)
