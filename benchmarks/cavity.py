@@ -28,7 +28,7 @@ SQUARE = {"least u": -0.3885698, "largest w": 0.3769447, "least w": -0.5270771}
 """O. Botella & R. Peyret, Comput. Fluids 27 (1998) 421, over the lid's speed; w on the horizontal centre line."""
 CUBE = {"least u": -0.2803833, "largest w": 0.2466511, "least w": -0.4350186}
 """S. Albensoeder & H. C. Kuhlmann, J. Comput. Phys. 206 (2005) 536."""
-LID_TIMES = {24: 100.0, 48: 60.0, 96: 40.0, 192: 25.0}
+LID_TIMES = {24: 100.0, 32: 60.0, 48: 60.0, 96: 40.0, 192: 25.0}
 """Cells over lid times that the flow is given from its start."""
 
 

@@ -1,6 +1,6 @@
 """Drag and force noise of a sphere held in a stream, against the towing experiments of Roos & Willmarth (1971).
 
-    python -m benchmarks.drag [--rates NAME ...] [--json FILE]
+    python -m benchmarks.drag [--fast] [--rates NAME ...] [--only TEXT] [--json FILE]
 
 The stream goes along x from an inlet to an outlet, 0.6 of the box's width ahead of the sphere and 0.9 behind it;
 the sides are free-slip. Below the Reynolds number of 212 at which a wake loses its axis of symmetry a quarter of
@@ -29,6 +29,7 @@ from scipy.optimize import brentq
 
 from benchmarks.collisions import CANDIDATES
 from lbm import DivergenceError, Inlet, Simulation
+from lbm.problems.held_sphere import inviscid
 from lbm.spheres import Sphere, Spheres
 from restitution import datasets
 from restitution.files import write_whole
@@ -77,23 +78,11 @@ def forces(stream: Stream) -> np.ndarray:
     centre = np.array([round(0.6 * stream.width * d) + stream.place, y, z])
     faces = {"x-": Inlet((u, 0, 0)), "x+": "outlet", "y": "free-slip", "z": "free-slip"}
     flow = Simulation(shape, CANDIDATES[stream.rates](u * d / stream.reynolds), faces=faces, dtype="float32")
-    flow.set_flow(*_inviscid(shape, centre, d / 2, u))
+    flow.set_flow(*inviscid(shape, centre, d / 2, u))
     ball = Spheres([Sphere(d / 2, 1.0, tuple(centre))], drive=lambda step, gap: (0.0, 0.0, 0.0))
     flow.add(ball)
     flow.run(round(stream.until * d / u))
     return ball.track()["fx"] / (0.5 * u**2 * np.pi / 4 * d**2)
-
-
-def _inviscid(shape, centre, radius, u) -> tuple[np.ndarray, np.ndarray]:
-    """Density and velocity around a sphere in potential flow, at rest within it."""
-    x, y, z = np.meshgrid(*(np.arange(n) + 0.5 - c for n, c in zip(shape, centre, strict=True)), indexing="ij")
-    r = np.sqrt(x**2 + y**2 + z**2).clip(0.5 * radius)
-    dipole = radius**3 / (2 * r**3)
-    velocity = -3 * u * dipole * x / r**2 * np.array([x, y, z])
-    velocity[0] += u * (1 + dipole)
-    velocity[:, r < radius] = 0
-    speed2 = (velocity**2).sum(axis=0)
-    return np.where(r < radius, 1.0, 1 + 1.5 * (u**2 - speed2)), velocity
 
 
 def measured(stream: Stream) -> dict[str, float | str]:
@@ -151,6 +140,15 @@ def streams(rates: str) -> list[Stream]:
     return [*steady, whole, *shedding]
 
 
+FAST = ((220.0, 10), (250.0, 10), (300.0, 10), (400.0, 8), (800.0, 8))
+"""Reynolds number and cells: 22 to 100 a cell."""
+
+
+def fast(rates: str) -> list[Stream]:
+    """Fast streams in a small quarter of a box: what noise there is, and whether the flow stays together."""
+    return [Stream(rates, re, d, width=4.0, speed=0.08, until=32.0, part=4) for re, d in FAST]
+
+
 def free_of_box(narrow: float, wide: float) -> float:
     """C_D without a box over that in the narrow one."""
     a, b = NARROW**-2, WIDE**-2
@@ -171,11 +169,14 @@ def main() -> None:
     """Measure what is missing, print the table, write the JSON."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rates", nargs="+", choices=CANDIDATES, metavar="NAME", default=RATES)
+    parser.add_argument("--fast", action="store_true", help="fast streams alone")
+    parser.add_argument("--only", metavar="TEXT", default="", help="streams with this in their name")
     parser.add_argument("--json", type=Path, default=Path("benchmarks/drag.json"))
     arguments = parser.parse_args()
     console = Console(width=150)
     known = json.loads(arguments.json.read_text()) if arguments.json.exists() else {}
-    wanted = [stream for rates in arguments.rates for stream in streams(rates)]
+    chosen = fast if arguments.fast else streams
+    wanted = [s for rates in arguments.rates for s in chosen(rates) if arguments.only in s.name]
     for stream in track([s for s in wanted if s.name not in known], "measuring", console=console):
         known[stream.name] = measured(stream)
         write_whole(arguments.json, json.dumps(known, indent=1) + "\n")

@@ -53,14 +53,20 @@ def rebound(cells: int, lattice_speed: float, preset: Callable | None = None) ->
 
     ``preset`` gives other rates than the case has, from the viscosity in lattice units.
     """
-    run = ResolvedRun(short(cells, lattice_speed))
+    run = made(short(cells, lattice_speed), preset)
+    contact = run.contacts[0]
+    return contact.speed_in_m_s, contact.speed_out_m_s, *_at_edges(run.motion()), *_later(run.motion())
+
+
+def made(case: Case, preset: Callable | None) -> ResolvedRun:
+    """The finished run of a case, with other rates than it has."""
+    run = ResolvedRun(case)
     if preset is not None:
         run.setup = replace(run.setup, rates=preset(run.flow.viscosity))
         run.simulation, run.spheres = run.setup.build()
     while not run.finished:
         run.advance()
-    contact = run.contacts[0]
-    return contact.speed_in_m_s, contact.speed_out_m_s, *_at_edges(run.motion()), *_later(run.motion())
+    return run
 
 
 def point_particle(wake: OwnWake | None) -> tuple[float, ...]:

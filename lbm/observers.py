@@ -19,7 +19,7 @@ from lbm.fluid import fields
 from lbm.fluid.stencil import CS2
 from lbm.io.vtkhdf import write_image
 from lbm.rates import Rates
-from lbm.rates_by_place import RatesByPlace
+from lbm.rates_by_place import FASTER, RatesByPlace
 from lbm.scales import Scales
 
 __all__ = ["Average", "Checkpoint", "DivergenceGuard", "FieldOutput", "Observer", "Probe", "Sums", "checked"]
@@ -110,13 +110,14 @@ class DivergenceGuard:
 
 def _warn_of_grid_reynolds(flow: Flow, speed: float) -> None:
     shown = _shown_stable(flow, flow.rates)
-    found = speed / flow.rates.viscosity
+    nu = flow.rates.viscosity
+    found = speed / nu
     if found > shown and not flow.warned_of_grid_reynolds:
         flow.warned_of_grid_reynolds = True
-        better = " or Rates.balanced" if _shown_stable(flow, Rates.balanced(flow.rates.viscosity)) > shown else ""
+        better = next((f" or {n}" for n, made in FASTER.items() if _shown_stable(flow, made(nu)) >= found), "")
         warnings.warn(
             f"grid Reynolds number {found:.3g} by step {flow.steps} (speed {speed:.3g}, viscosity "
-            f"{flow.rates.viscosity:.3g}): with these rates flows were shown to be stable up to {shown:g}; "
+            f"{nu:.3g}): with these rates flows were shown to be stable up to {shown:g}; "
             f"take more cells{better}",
             OutsideRangeWarning,
             stacklevel=4,

@@ -24,6 +24,10 @@ _FAST = 0.3
 """Slowest s_m with which flows of high grid Reynolds number were shown to be stable."""
 _SLOWER = 0.2
 """(1/s_nu - 1/2)(1/s_q - 1/2) above which q is slower than two relaxation times have it (3/16)."""
+_AT_ONCE = 1.0
+"""s_q and s_m from which on odd moments relax within a step or two."""
+_UNDAMPED = 1.5
+"""s_e and s_pi beyond which even moments overshoot, as all of them do with one rate at low viscosity."""
 
 
 def _rate(viscosity: float, factor: float, name: str) -> float:
@@ -94,6 +98,16 @@ class Rates:
         return cls(nu=even, e=even, eps=even, q=odd, pi=even, m=odd)
 
     @classmethod
+    def slow_odd(cls, viscosity: float, magic: float = 3 / 16) -> Rates:
+        """:meth:`two_relaxation_times` with the even rates of :meth:`dhumieres2002`: for cells beside walls.
+
+        Half-way walls stay where they are, and the even moments, which at low viscosity hardly relax with s_nu,
+        are damped: so fast flow at a wall, as when a sphere leaves it, stays stable.
+        """
+        base = cls.two_relaxation_times(viscosity, magic)
+        return replace(base, e=1.19, eps=1.4, pi=1.4)
+
+    @classmethod
     def quiet(cls, viscosity: float) -> Rates:
         """Rates for flow away from walls, stable and quiet where :meth:`two_relaxation_times` are not.
 
@@ -101,8 +115,7 @@ class Rates:
         is L_m = 1/s_m - 1/2 = 1: of little weight between 0.3 and 1.98 (benchmarks/README.md). Beside a wall
         L_m moves the wall; there :class:`lbm.RatesByPlace` has others.
         """
-        base = cls.two_relaxation_times(viscosity)
-        return cls(nu=base.nu, e=1.19, eps=1.4, q=base.q, pi=1.4, m=2 / 3)
+        return replace(cls.slow_odd(viscosity), m=2 / 3)
 
     @classmethod
     def balanced(cls, viscosity: float, magic: float = 3 / 16) -> Rates:
@@ -155,25 +168,38 @@ class Rates:
         """Largest speed times cell over viscosity up to which flows were shown to be stable.
 
         Where s_m is 0.3 or more, 53: a Taylor-Green vortex of Re 400 on 48^3 cells starts at 52.4. With slower m
-        flows are noisy, or diverge, from about 10 on (benchmarks/README.md).
+        flows are noisy, or diverge, from about 10 on; with odd rates of 1 and more the wake of a sphere is steady
+        at 63 (benchmarks/README.md).
         """
+        if self.odd_at_once:
+            return 63.0
         return 53.0 if self.m >= _FAST else 10.0
 
     @property
     def grid_reynolds_at_bodies(self) -> float:
-        """The same about a body, by a sphere held in a stream.
+        """The same about a body, by the fastest flow about a sphere held in a stream, up to a noise of 2 %.
 
-        :meth:`quiet` ran at Re 300 and 10 cells (42 by the fastest flow) and diverged at 8 (52); :meth:`balanced`,
-        whose q is slower than two relaxation times have it, ran at Re 300 and 12 cells (35), with a noise of 11 %,
-        and diverged at 10.
+        :meth:`balanced`, whose q is slower than two relaxation times have it: Re 250 at 10 cells; it diverged at
+        300. :meth:`quiet`: Re 300 at 10 cells; it diverged at 8. Odd rates of 1 and more with even ones about as
+        fast, like :meth:`dhumieres2002`: Re 400 at 8 cells.
         """
+        if self.odd_at_once:
+            return self.grid_reynolds
         magic = (1 / self.nu - 0.5) * (1 / self.q - 0.5)
-        return min(42.0 if magic < _SLOWER else 35.0, self.grid_reynolds)
+        return min(37.0 if magic < _SLOWER else 31.0, self.grid_reynolds)
 
     @property
     def grid_reynolds_at_moving_walls(self) -> float:
-        """The same at a moving wall: a cubic cavity of Re 1000 settles at 48 cells (21), diverges at 24 (42)."""
-        return min(21.0, self.grid_reynolds)
+        """The same at a moving wall, by cubic cavities of Re 1000 that settle.
+
+        32 cells (31) with :meth:`dhumieres2002`, 48 (21) with the others; none at 24 (42).
+        """
+        return min(31.0 if self.odd_at_once else 21.0, self.grid_reynolds)
+
+    @property
+    def odd_at_once(self) -> bool:
+        """Whether q and m relax within a step or two and no even moment overshoots: d'Humieres' rates."""
+        return min(self.q, self.m) >= _AT_ONCE and max(self.e, self.eps, self.pi) <= _UNDAMPED
 
     def layers(self) -> tuple[Rates, ...]:
         """Rates by layer of cells from a wall, of which this is the only one; see :class:`lbm.RatesByPlace`."""

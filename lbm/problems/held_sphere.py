@@ -24,6 +24,7 @@ class Stream:
 
     ``quarter``: the stream is symmetric about two planes, of which the box holds a quarter (steady below Re 210).
     ``settling`` and ``measured``: how long the flow develops, and over how long it is looked at, in d/U.
+    ``inviscid``: it starts from the flow of an inviscid fluid, which makes little sound, not from a stream.
     """
 
     upstream: float = 2.5
@@ -32,6 +33,7 @@ class Stream:
     quarter: bool = False
     settling: float = 15.0
     measured: float = 4.0
+    inviscid: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,9 +56,10 @@ def held_sphere(
     faces = {"x-": Inlet((SPEED, 0, 0)), "x+": "outlet", "y": "free-slip", "z": "free-slip"}
     length, wide = round((box.upstream + box.downstream) * d), round(box.width * d / (2 if box.quarter else 1))
     flow = Simulation((length, wide, wide), rates(SPEED * d / reynolds), faces=faces, dtype=dtype)
-    flow.set_flow(1.0, (SPEED, 0, 0))
     middle = (0.0, 0.0) if box.quarter else (box.width / 2 * d + 0.3, box.width / 2 * d + 0.2)
-    held = Spheres([Sphere(d / 2, 1.0, (box.upstream * d, *middle))], drive=lambda step, gap: (0.0, 0.0, 0.0))
+    centre = (box.upstream * d, *middle)
+    flow.set_flow(*(inviscid(flow.shape, centre, d / 2, SPEED) if box.inviscid else (1.0, (SPEED, 0, 0))))
+    held = Spheres([Sphere(d / 2, 1.0, centre)], drive=lambda step, gap: (0.0, 0.0, 0.0))
     flow.add(held)
     flow.run(round(box.settling * d / SPEED))
     count = round(box.measured * d / SPEED)
@@ -66,3 +69,15 @@ def held_sphere(
     trend = np.polyval(np.polyfit(steps, drag, 6), steps)
     mean = float(np.mean(drag))
     return Drag(mean / (0.5 * SPEED**2 * math.pi / 4 * d**2), float(np.std(drag - trend)) / mean)
+
+
+def inviscid(shape, centre, radius: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Density and velocity about a sphere in a stream of potential flow along x, at rest within it."""
+    x, y, z = np.meshgrid(*(np.arange(n) + 0.5 - c for n, c in zip(shape, centre, strict=True)), indexing="ij")
+    r = np.sqrt(x**2 + y**2 + z**2).clip(0.5 * radius)
+    dipole = radius**3 / (2 * r**3)
+    velocity = -3 * speed * dipole * x / r**2 * np.array([x, y, z])
+    velocity[0] += speed * (1 + dipole)
+    velocity[:, r < radius] = 0
+    speed2 = (velocity**2).sum(axis=0)
+    return np.where(r < radius, 1.0, 1 + 1.5 * (speed**2 - speed2)), velocity

@@ -66,13 +66,26 @@ class Release(Record):
     free_below_d: Positive = 0.5
 
 
+RatesName = Literal[
+    "balanced-by-place", "dhumieres-by-place", "quiet-by-place", "balanced", "quiet", "two-relaxation-times",
+    "dhumieres2002",
+]  # fmt: skip
+QUIET_TO = 22.0
+"""Grid Reynolds number, speed times cell over viscosity, up to which balanced rates were shown to be quiet.
+
+A sphere held in a stream at 10 cells a diameter: at 22 they are as quiet as any, at 25 the force has 1.3 % of
+noise, at 30 the flow diverges (benchmarks/README.md).
+"""
+
+
 class Numerics(Record):
     """Grid, box and method of the resolved run.
 
     ``lattice_speed`` is what ``reference_speed`` (m/s; by default the speed of the drive) becomes in cells a step:
     it sets the time step. The box is ``width_d`` wide and deep, ``height_d`` high. With ``symmetry`` "quarter",
     the default of a fall that is not ``along`` the wall too, two mirrors meet in the axis of the fall, and a
-    quarter of the box is computed for the whole.
+    quarter of the box is computed for the whole. ``rates`` are those of :class:`lbm.Rates` and
+    :class:`lbm.RatesByPlace`, by default as fast as the flow is (:attr:`Case.rates`).
     """
 
     cells_per_diameter: Positive
@@ -83,9 +96,7 @@ class Numerics(Record):
     sides: Literal["periodic", "no-slip", "free-slip"] = "periodic"
     top: Literal["no-slip", "free-slip", "outlet"] = "no-slip"
     precision: Literal["float32", "float64"] = "float32"
-    rates: Literal["balanced-by-place", "balanced", "two-relaxation-times", "quiet", "dhumieres2002"] = (
-        "balanced-by-place"
-    )
+    rates: RatesName | None = None
     interpolation: Literal["linear", "central-linear"] = "linear"
     symmetry: Literal["none", "quarter"] | None = None
 
@@ -218,3 +229,18 @@ class Case(Record):
         """The speed in m/s that the lattice speed stands for."""
         given = self.numerics.reference_speed if self.numerics is not None else None
         return given if given is not None else self.release.speed
+
+    @property
+    def rates(self) -> RatesName:
+        """Relaxation rates of the resolved run: as chosen, else by the grid Reynolds number of the speed.
+
+        Up to :data:`QUIET_TO` "balanced-by-place", which have walls and surfaces in their place, beyond it
+        "dhumieres-by-place", which are the quietest in fast flow.
+        """
+        n, speed = self.numerics, self.reference_speed
+        if n is not None and n.rates is not None:
+            return n.rates
+        if n is None or speed is None:
+            return "balanced-by-place"
+        reynolds = speed * self.sphere.diameter * self.fluid.density / self.fluid.viscosity
+        return "balanced-by-place" if reynolds / n.cells_per_diameter <= QUIET_TO else "dhumieres-by-place"

@@ -155,7 +155,7 @@ def _lattice(case: Case) -> list[tuple[str, str]]:
         ("lattice speed", f"{flow.speed:g} cells a step, Ma {flow.mach:.3g}"),
         ("viscosity", f"{flow.viscosity:.4g} cells2 a step, relaxation time {flow.relaxation_time:.5g}"),
         ("grid Re", f"{flow.grid_reynolds:.3g}"),
-        ("rates", case.numerics.rates),
+        ("rates", case.rates),
         ("work", f"about {steps:.2g} steps, {steps * cells:.2g} cell updates"),
         *advice,
     ]

@@ -122,7 +122,7 @@ def _set_up(case: Case) -> Setup:
     return Setup(
         flow=flow,
         shape=(wide, wide, high),
-        rates=PRESETS[n.rates](viscosity=flow.viscosity),
+        rates=PRESETS[case.rates](viscosity=flow.viscosity),
         faces={**sides, "z-": "no-slip", "z+": n.top},
         precision=n.precision,
         interpolation=n.interpolation,

@@ -45,7 +45,7 @@ def numerics(run: KeptRun) -> dict:
         "steps": about.steps,
         "step_us": f"{about.step_s * 1e6:.3g}",
         "numbers": {k: f"{about.numbers[k]:.4g}" for k in ("Re", "Ma", "relaxation time", "grid Re")},
-        "method": f"{n.rates}, {n.interpolation}, {n.precision}; sides {n.sides}, top {n.top}"
+        "method": f"{run.case.rates}, {n.interpolation}, {n.precision}; sides {n.sides}, top {n.top}"
         + ("; a quarter" if run.case.quartered else ""),
         "film": film.form if film.form == "none" else f"{film.form}, {film.cut_off:g} cells",
         "seconds": f"{about.seconds:.0f} ({about.threads})",

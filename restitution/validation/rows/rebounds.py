@@ -46,8 +46,8 @@ _LAW_ON_FINE = {
     "apex 3, mm": _THIRD,
 }
 _CREEPING = (
-    "2.7 % slow at Re 1.5 with all rates that leave walls in their place (two relaxation times: 0.920, at 7.5 "
-    "cells 0.929); why is not known"
+    "the record is faster than a sphere of the stated density and viscosity can be in that tank: creeping, it "
+    "would have 0.936 of the terminal speed, at Re 1.4 it has less (benchmarks.tank)"
 )
 KNOWN: dict[str, dict[str, str]] = {
     "gondret_st152_10": dict.fromkeys(("apex 3, mm", "flight 3, ms"), _THIRD),

@@ -186,6 +186,16 @@ def test_lattice_speed_out_of_range_says_which_knob(tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+def test_fast_flow_gets_the_rates_that_bear_it_unless_others_are_chosen(tmp_path):
+    """Re = 935 x 0.585 x 0.003 / 0.01 = 164.1 over the cells a diameter: 20.5 and 23.4 a cell."""
+    found = []
+    for cells, chosen in (("8", ""), ("7", ""), ("7", '\nrates = "balanced"')):
+        file = tmp_path / f"{len(found)}.toml"
+        file.write_text(GOOD.replace("diameter = 10", f"diameter = {cells}{chosen}"))
+        found.append(cases.read_case(str(file)).rates)
+    assert found == ["balanced-by-place", "dhumieres-by-place", "balanced"]
+
+
 def test_a_circle_of_bases_ends(tmp_path):
     (tmp_path / "a.toml").write_text('base = "b"\n')
     (tmp_path / "b.toml").write_text('base = "a"\n')
