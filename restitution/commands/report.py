@@ -23,6 +23,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     add.add_argument("--out", metavar="FOLDER", default="reports/fig1", help="where to write it (reports/fig1)")
     _add_runs(add)
+    _add_rebounds(add)
     add.set_defaults(run=run_fig1)
 
     add = reports.add_parser(
@@ -56,6 +57,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     add.add_argument("--out", metavar="FOLDER", default="reports", help="where to write fig1/ and fig2/ (reports)")
     _add_making(add)
+    _add_rebounds(add)
     add.set_defaults(run=run_all)
 
 
@@ -82,15 +84,27 @@ def _add_runs(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_rebounds(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--rebounds",
+        metavar="FILE",
+        help="simulated rebounds to show and fit (reports/rebounds/rebounds.csv, if there is one)",
+    )
+
+
 def run_fig1(args: argparse.Namespace) -> None:
     """Write the Fig. 1 report and name its files."""
     from restitution.errors import Defect, InputError
     from restitution.report.fig1 import report
+    from restitution.report.fig1.rebounds import FILE
     from restitution.stokes import Speed
 
     if not args.out:
         raise InputError(Defect("names no folder", field="--out"))
-    for name in report.write(args.out, Speed(args.speed), args.runs):
+    simulated = args.rebounds
+    if simulated is None and Path(FILE).is_file():
+        simulated = FILE
+    for name in report.write(args.out, Speed(args.speed), args.runs, simulated):
         show(str(Path(args.out) / name))
 
 

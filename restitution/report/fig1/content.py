@@ -16,6 +16,8 @@ from restitution import datasets, laws
 from restitution.impacts.shipped import impacts_of
 from restitution.laws.source_abstract_eq4 import READINGS
 from restitution.report.fig1 import scores as comparison
+from restitution.report.fig1.rebounds import Rebounds
+from restitution.report.fig1.rebounds import gather as gather_rebounds
 from restitution.stokes import MEASURED_SPEEDS, Speed
 
 if TYPE_CHECKING:
@@ -56,6 +58,8 @@ class Fig1:
     judgements: list[Judgement]
     trajectories: Trajectories
     simulated: dict[str, Predicted] = field(default_factory=dict)
+    rebounds: Rebounds | None = None
+    """Those of the committed sweeps, which are in none of the tables above."""
 
     @property
     def measured(self) -> pd.DataFrame:
@@ -66,10 +70,11 @@ class Fig1:
         return next(j for j in self.judgements if j.definition == str(speed))
 
 
-def gather(speed: Speed = SPEED, runs: str | Path | None = None) -> Fig1:
+def gather(speed: Speed = SPEED, runs: str | Path | None = None, rebounds: str | Path | None = None) -> Fig1:
     """Impacts of all shipped trajectories that have any, and the scores of the laws against the measured ones.
 
-    ``runs`` is the folder of kept simulations: those of a series add to the figure and enter no score.
+    ``runs`` is the folder of kept simulations: those of a series add to the figure and enter no score; nor do
+    those of ``rebounds``, a table of simulated ones.
     """
     simulated = {} if runs is None else predicted(Path(runs))
     every, scores, conditions, notes, judgements, trajectories = _everything()
@@ -80,7 +85,10 @@ def gather(speed: Speed = SPEED, runs: str | Path | None = None) -> Fig1:
 
         every = pd.concat([every, pd.DataFrame(rows, columns=every.columns)], ignore_index=True)
     impacts = every[every.speed_definition == str(speed)].reset_index(drop=True)
-    return Fig1(impacts, every, scores, conditions, notes[str(speed)], judgements, trajectories, simulated)
+    own_rebounds = None if rebounds is None else gather_rebounds(str(rebounds))
+    return Fig1(
+        impacts, every, scores, conditions, notes[str(speed)], judgements, trajectories, simulated, own_rebounds
+    )
 
 
 @cache

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from restitution import datasets, laws
 from restitution.impacts.shipped import impacts_of
 from restitution.laws.source_abstract_eq4 import READINGS
-from restitution.report.fig1 import content, trajectories
+from restitution.report.fig1 import content, rebounds, trajectories
 from restitution.report.fig1.verdict import in_words, table
 from restitution.report.page import render as render_page
 from restitution.stokes import CONVENTIONS, H_FILM, MEASURED_SPEEDS, Speed
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 DEFINITIONS = [str(s) for s in MEASURED_SPEEDS]
 
 
-def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
+def render(fig1: content.Fig1, speed: Speed, svg: str, rebounds_svg: str | None = None) -> str:
     """The whole page as text."""
     overall = fig1.scores[fig1.scores.record == "all"].set_index(["law", "speed_definition"])
     measured = [r for r in map(datasets.resource, fig1.conditions) if r.kind == "measured"]
@@ -31,6 +31,8 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         noise={name: datasets.load_track(name).sigma for name in fig1.conditions},
         films=_films(),
         figure=svg,
+        rebounds_figure=rebounds_svg,
+        rebounds=fig1.rebounds and _simulated(fig1.rebounds),
         speed=str(speed),
         definitions=DEFINITIONS,
         counts={d: int(overall.xs(d, level=1)["impacts"].iloc[0]) for d in DEFINITIONS},
@@ -54,6 +56,21 @@ def render(fig1: content.Fig1, speed: Speed, svg: str) -> str:
         film=H_FILM,
         data=[datasets.resource(name) for name in fig1.conditions],
     )
+
+
+def _simulated(r: rebounds.Rebounds) -> dict[str, Any]:
+    """What the section of the simulated rebounds says."""
+    grid = r.points.e_grid_sigma.dropna()
+    return {
+        "cells": [f"{c:g}" for c in sorted({c for pair in r.points.cells for c in pair})],
+        "words": rebounds.in_words(r),
+        "rows": rebounds.table(r),
+        "points": [row for d in rebounds.DEFINITIONS for row in r.of(str(d)).to_dict("records")],
+        "grid_median": float(grid.median()),
+        "grid_largest": float(grid.max()),
+        "rates_differ": r.rates_differ,
+        "lost": r.lost.to_dict("records"),
+    }
 
 
 def _ranking(overall: pd.DataFrame, speed: str) -> list[tuple[str, list[dict]]]:

@@ -16,6 +16,7 @@ from restitution.report.fig1.content import OTHERS, SIMULATED_BY_ABSTRACT, Fig1
 from restitution.stokes import Speed, StokesNumber
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
@@ -52,6 +53,10 @@ _FURTHER = (("P", "#cccccc"), ("X", "#cccccc"), ("*", "#cccccc"), ("v", "#cccccc
 """Markers and faces of series that have none above: those of this package's runs, in turn."""
 
 
+_BY_RATIO = {1.5: "<", 2.5: ">", 8.0: "d"}
+"""Of simulated rebounds over St, by density ratio."""
+
+
 def draw(fig1: Fig1, speed: Speed) -> Drawing:
     """Both panels as SVG and PNG."""
     from matplotlib.figure import Figure
@@ -69,6 +74,8 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
                 _trajectory_band(ax, fig1)
             _lines(ax, names, fig1)
             _points(ax, fig1)
+            if fig1.rebounds is not None:
+                _rebounds(ax, fig1.rebounds.of(str(speed)))
             ax.set_title(title, loc="left", fontsize=11)
             ax.set_xscale("log")
             ax.set_xlim(St_MIN, St_MAX)
@@ -82,7 +89,7 @@ def draw(fig1: Fig1, speed: Speed) -> Drawing:
             )  # fmt: skip
         left.set_ylabel(r"effective restitution  $e_{\mathrm{eff}}/e_{\mathrm{dry}}$  [-]")
         figure.legend(
-            handles=[_key(*look) for look in looks(fig1).values()],
+            handles=[_key(*look) for look in (*looks(fig1).values(), *_looks_of_rebounds(fig1))],
             loc="outside lower center",
             ncols=2,
             fontsize=8.5,
@@ -152,6 +159,27 @@ def _points(ax: Axes, fig1: Fig1) -> None:
             limit.stokes.astype(float), upper, xerr=limit.stokes_sigma.astype(float), yerr=0.06, uplims=True,
             fmt=marker, ms=4, mfc=face, mec="black", color="black", elinewidth=0.8, zorder=3,
         )  # fmt: skip
+
+
+def _rebounds(ax: Axes, rows: pd.DataFrame) -> None:
+    """Simulated first rebounds of the greatest e_dry, by density ratio, each with the error of its grids."""
+    rows = rows[(rows.e_dry == rows.e_dry.max()) & (rows.outcome == "rebound")]
+    for ratio, group in rows.groupby("density_ratio"):
+        ax.errorbar(
+            group.stokes, group.e_eff / group.e_dry, yerr=group.e_grid_sigma / group.e_dry,
+            fmt=_BY_RATIO[ratio], ms=4.5, mfc="#dddddd", mec="#444444", ecolor="#444444", mew=0.8,
+            elinewidth=0.8, capsize=1.5, zorder=3,
+        )  # fmt: skip
+
+
+def _looks_of_rebounds(fig1: Fig1) -> list[tuple[str, str, str]]:
+    if fig1.rebounds is None:
+        return []
+    ratios = sorted(set(fig1.rebounds.points.density_ratio))
+    return [
+        (f"this package, simulation over St at a density ratio of {ratio:g}", _BY_RATIO[ratio], "#dddddd")
+        for ratio in ratios
+    ]
 
 
 def _series(fig1: Fig1) -> list[str]:

@@ -101,6 +101,17 @@ def test_runs_of_another_experiment_are_refused(runs, tmp_path):
         calibrate(group, how=HOW)
 
 
+def test_strict_refuses_what_is_doubted_and_writes_nothing(runs, tmp_path, capsys):
+    few = altered(runs, tmp_path, lambda k, row: row if k < 8 else None)
+    out = tmp_path / "out"
+    words = [str(few), "--conditions", str(runs.parent / "filmed.toml"), "--out", str(out), "--strict"]
+    assert main(["calibrate-solver", *words]) == 2
+    printed = capsys.readouterr()
+    assert "8 runs vary 2 parameters" in printed.err
+    assert printed.out == ""
+    assert not out.exists()
+
+
 def test_the_command_writes_what_it_reads(runs, tmp_path, capsys):
     conditions, out = runs.parent / "filmed.toml", tmp_path / "out"
     assert main(["calibrate-solver", str(runs), "--conditions", str(conditions), "--out", str(out)]) == 0
