@@ -108,7 +108,7 @@ def _command(args: argparse.Namespace) -> str:
 
 
 def _show(c: Calibration) -> None:
-    from restitution.emulation.page import recommended
+    from restitution.emulation.page import gain, recommended
 
     met, held = ", ".join(e.name for e in c.used), ", ".join(e.name for e in c.held_out)
     show(
@@ -147,3 +147,4 @@ def _show(c: Calibration) -> None:
         for v in p.values
     ]  # fmt: skip
     show_rows(("record", "quantity", "measured", "before", "after (68 %)"), rows)
+    show(gain(c))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from importlib import metadata
 
@@ -29,7 +30,7 @@ def files(table: str, found: Sequence[Calibration], command: str) -> dict[str, s
     fit = solver_fit(table, found)
     page = render(
         "solver.html.j2", title="A solver calibrated by its runs", command=command, groups=groups, fit=fit,
-        recommended=recommended(found), sklearn=metadata.version("scikit-learn"),
+        recommended=recommended(found), gains=[gain(c) for c in found], sklearn=metadata.version("scikit-learn"),
     )  # fmt: skip
     return {"index.html": page, FILE: fit.text(), **contents}
 
@@ -57,3 +58,26 @@ def said(c: Calibration, name: str) -> str:
     if t.says_nothing:
         return "the records say nothing about it"
     return f"{t.share:.0%} of the prior's width"
+
+
+GAIN = 0.9
+"""Distance to records after over that before, below which something is gained; one apex read anew moves it so."""
+
+
+def gain(c: Calibration) -> str:
+    """Whether records come closer, those that were met and those that had no say, in a sentence."""
+    parts, ratios = [], {}
+    for name, held in (("met", False), ("held out", True)):
+        own = [p for p in c.predictions if p.held_out is held]
+        if own:
+            before, after = (
+                math.sqrt(sum(getattr(p, f"rms_{when}_d") ** 2 for p in own) / len(own))
+                for when in ("before", "after")
+            )
+            ratios[held] = after / before
+            parts.append(f"records {name} from {before:.3f} to {after:.3f} d")
+    which = "that had no say" if True in ratios else "that were met (none was held out)"
+    ratio = ratios.get(True, ratios.get(False, 1.0))
+    said = f"something is gained on records {which}" if ratio < GAIN else f"nothing is gained on records {which}"
+    label = f"{c.group.label}: " if c.group.label else ""
+    return f"{label}root mean square distances go, {', '.join(parts)}: {said}."

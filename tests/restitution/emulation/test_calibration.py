@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from restitution.calibration.reading.reading import Reading
 from restitution.cli import main
 from restitution.emulation import calibrate, read_runs, read_solver
+from restitution.emulation.page import gain
 from restitution.errors import InputError
 
 from .parabolas import CONDITIONS, design, gap, write_runs, write_track
@@ -37,6 +39,14 @@ def test_truth_lies_within_the_intervals(found):
     # Of the duration 2 e v/g' and the height (e v)^2/(2 g') a greater e makes up for a greater g', C smaller.
     assert found.correlation[0, 1] != 0
     assert found.predictions[0].rms_after_d < 0.01
+
+
+def test_what_is_gained_is_said_of_records_that_had_no_say(found):
+    met = found.predictions[0]
+    assert "something is gained on records that were met" in gain(found)
+    out = replace(met, held_out=True, rms_before_d=0.1, rms_after_d=0.099)
+    said = gain(replace(found, predictions=(met, out)))
+    assert "held out from 0.100 to 0.099 d: nothing is gained on records that had no say" in said
 
 
 def test_draws_are_the_same_to_the_last_digit(found, runs):
