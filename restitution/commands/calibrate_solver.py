@@ -29,12 +29,17 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("runs", metavar="RUNS", help="table of runs, or the folder of a sweep")
     parser.add_argument(
-        "--record", nargs="+", default=[], metavar="NAME",
+        "--record", nargs="+", action="extend", default=[], metavar="NAME",
         help="records to be met (default: all that the runs simulate but those held out); for a table without the "
         "column, what all runs simulate",
     )  # fmt: skip
     parser.add_argument(
-        "--held-out", nargs="+", default=[], metavar="NAME", help="records that are predicted and have no say"
+        "--held-out",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME",
+        help="records that are predicted and have no say",
     )
     parser.add_argument(
         "--prior", action="append", default=[], type=_range, metavar="KEY=LO:HI",

@@ -30,7 +30,8 @@ def add_track(parser: argparse.ArgumentParser, several: bool = False) -> None:
     group = parser.add_argument_group("what the numbers of a track mean, where its file does not say it")
     if several:
         group.add_argument(
-            "--settings", nargs="+", metavar="FILE", help="all of this in a TOML file, one for all trajectories "
+            "--settings", nargs="+", action="extend", metavar="FILE",
+            help="all of this in a TOML file, one for all trajectories "
             "or one each in their order; options go before it",
         )  # fmt: skip
     else:

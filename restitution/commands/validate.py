@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from restitution.validation.scorecard import Result, Scorecard
 
 _STATUS = """exit status:
-  0  every row passes, or is a known miss that has not moved from the baseline
+  0  every row passes, or is a known miss that has not moved from the baseline; after --bless, none fails the truth
   1  a row fails against the truth or the baseline
   2  input that cannot be used
   3  a row was not evaluated, or there is no baseline for it
@@ -40,11 +40,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         default="default",
         help="quick: a minute; default: ten minutes; full: hours, all kept runs are made again",
     )
-    parser.add_argument("--only", nargs="+", metavar="ROW", help="these rows, of any depth")
+    parser.add_argument(
+        "--only", nargs="+", action="extend", metavar="ROW", help="these rows, of any depth; may be repeated"
+    )
     parser.add_argument(
         "--failed", action="store_true", help="the rows that did not pass in the folder's scorecard"
     )
-    parser.add_argument("--list", action="store_true", help="name the rows and stop")
+    parser.add_argument("--list", action="store_true", help="name the rows, or those that were named, and stop")
     parser.add_argument(
         "--out",
         metavar="FOLDER",
@@ -60,10 +62,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="what to compare with, or --bless writes (reports/validate/baseline.json, else the one installed)",
     )
     parser.add_argument(
-        "--bless", metavar="REASON", help="renew the baseline with what these rows give now, and say why"
+        "--bless",
+        metavar="REASON",
+        help="renew the baseline with what these rows give now, and "
+        "say why; lbm, restitution, data and reports/runs must be as committed",
     )
     parser.add_argument(
-        "--runs", metavar="FOLDER", default="reports/runs", help="where runs are kept (reports/runs)"
+        "--runs", metavar="FOLDER", help="where runs are kept (reports/runs, else those installed)"
     )
     validate_trajectory.add_options(parser)
     parser.set_defaults(run=run)
@@ -75,20 +80,23 @@ def run(args: argparse.Namespace) -> int:
     from restitution.validation import page
     from restitution.validation.baseline import blessed
     from restitution.validation.row import Depth
-    from restitution.validation.rows import Setting, all_rows, chosen
+    from restitution.validation.rows import Setting, all_rows, chosen, kept_runs
     from restitution.validation.scorecard import FILE, SO_FAR, Judged, Scorecard
+    from restitution.validation.verdict import FAILED, Verdict
 
     validate_trajectory.check(args)
-    if args.list:
-        _list(all_rows(Setting(Path(args.runs))))
-        return 0
+    runs = Path(args.runs or kept_runs())
     folder = _folder(args.out)
+    if args.list:
+        only = _only(args, folder)
+        _list(chosen(all_rows(Setting(runs)), Depth.FULL, only))
+        return 0
     if args.trajectory:
         return validate_trajectory.run(args, folder)
     path, baseline = _baseline(args)
     depth = Depth(args.depth)
     again = folder / "runs" if depth is Depth.FULL and not args.only and not args.failed else None
-    every = all_rows(Setting(Path(args.runs), again, not args.resume))
+    every = all_rows(Setting(runs, again, not args.resume))
     rows = chosen(every, depth, _only(args, folder))
     if not rows:
         show("every row of that scorecard passed")
@@ -112,7 +120,10 @@ def run(args: argparse.Namespace) -> int:
     if args.bless is not None:
         write_whole(path, blessed(rows, results, spread, args.bless, baseline, every).text())
         show(f"{path}: {len(rows)} rows renewed")
-        return 0
+        wrong = [judged.row.name for judged in judged if judged.truth is Verdict.FAIL]
+        if wrong:
+            show(f"doubt: held now, and still failing against the truth: {', '.join(wrong)}")
+        return FAILED if wrong else 0
     return card.status
 
 
@@ -148,10 +159,12 @@ def _baseline(args: argparse.Namespace) -> tuple[Path, Baseline | None]:
 
 def _spread(args: argparse.Namespace, path: Path, rows: dict[str, Row]) -> dict[str, dict[str, float]]:
     """The measured spread, where the baseline is to be renewed; what forbids that is said before any work."""
+    from restitution.files import check_place
     from restitution.validation.baseline import SPREAD, check_blessing, read_spread, shipped
 
     if args.bless is None:
         return {}
+    check_place(path)
     own = path.with_name(SPREAD)
     spread = read_spread(own if own.is_file() else shipped(SPREAD))
     check_blessing(rows, spread, args.bless)
@@ -185,7 +198,7 @@ def _measured(
     try:
         return measure_all(rows, folder, args.resume, say, done)
     except KeyboardInterrupt:
-        say(f"stopped; --resume --out {folder} goes on with the row that was being measured")
+        say("stopped; the same command with --resume goes on with the row that was being measured")
         raise
 
 

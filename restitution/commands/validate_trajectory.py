@@ -19,12 +19,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """What is scored, against which record, and what its numbers mean."""
     group = parser.add_argument_group("a trajectory of another solver")
     group.add_argument(
-        "--trajectory", nargs="+", metavar="FILE", help="score these against the record of --case: time and gap, "
-        "height or velocity, in any unit (--unit, --time-unit; a header such as t [s], gap/d or v says it); "
+        "--trajectory", nargs="+", action="extend", metavar="FILE",
+        help="score these against the record of --case: time and gap, height or velocity, in any unit (--unit, "
+        "--time-unit; a header such as t [s], gap/d or v says it); "
         "several stand side by side, what a header says going before these options",
     )  # fmt: skip
     group.add_argument("--case", metavar="CASE", help="a record or a shipped case, such as gondret-st152")
-    group.add_argument("--name", nargs="+", metavar="NAME", help="what the trajectories are called (their files)")
+    group.add_argument(
+        "--name", nargs="+", action="extend", metavar="NAME", help="what the trajectories are called (their files)"
+    )
     group.add_argument(
         "--grid-error", type=options.number, metavar="X", default=0.0,
         help="relative error of the first apex by the solver's own grid, which the record's error is added to (0)",

@@ -32,6 +32,7 @@ BASELINE, SPREAD = "baseline.json", "spread.json"
 FOLDER = Path("reports/validate")
 """Where a checkout keeps both; an installed program has them beside this module."""
 VERSION = 1
+_MEND = "take it from version control, or delete it and have --bless write a new one"
 SAFETY = 5
 """Tolerances are so many times the measured spread."""
 _DIGITS = 1e-12
@@ -89,11 +90,14 @@ def _seal(content: Mapping[str, Any]) -> str:
 
 def read_baseline(path: Path) -> Baseline:
     """A baseline; raises :class:`InputError` for one of another version, cut short, or edited by hand."""
-    content = read_json(path)
+    try:
+        content = read_json(path)
+    except InputError as error:
+        raise InputError(*error.defects, Defect(f"is no baseline any more: {_MEND}", file=str(path))) from None
     if not isinstance(content, dict) or "version" not in content:
-        raise InputError(Defect("is no baseline of 'restitution validate'", file=str(path)))
+        raise InputError(Defect(f"is no baseline of 'restitution validate': {_MEND}", file=str(path)))
     if content["version"] != VERSION:
-        rule = f"is of a baseline of another version; this program reads {VERSION}: renew it with --bless"
+        rule = f"is of a baseline of another version; this program reads {VERSION}: {_MEND}"
         raise InputError(Defect(rule, file=str(path), field="version", value=str(content["version"])))
     sealed = content.pop("seal", None)
     try:
@@ -101,7 +105,7 @@ def read_baseline(path: Path) -> Baseline:
     except ValidationError as error:
         raise InputError(*defects_of(error, str(path))) from None
     if sealed != _seal(baseline.model_dump(mode="json")):
-        rule = "has been edited since --bless wrote it, as its seal shows: renew it with --bless"
+        rule = f"has been edited since --bless wrote it, as its seal shows: {_MEND}"
         raise InputError(Defect(rule, file=str(path), field="seal"))
     return baseline
 

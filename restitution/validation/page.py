@@ -9,9 +9,10 @@ from restitution.validation.plot import draw
 from restitution.validation.scorecard import Judged, Scorecard
 from restitution.validation.verdict import Verdict
 
+_NAMED = 5
 STATUS = {
     0: "Nothing fails: every row passes, or is a known miss that has not moved.",
-    1: "A row fails.",
+    1: "Not as it should be:",
     3: "Something was not evaluated, or there is no baseline for it.",
 }
 
@@ -24,10 +25,17 @@ def render(card: Scorecard) -> str:
         command="restitution validate",
         card=card,
         made=card.made,
-        status=STATUS[card.status],
+        status=_status(card),
         verdicts=list(Verdict),
         rows=[_row(judged) for judged in card.rows],
     )
+
+
+def _status(card: Scorecard) -> str:
+    """What the scorecard comes to, naming the first rows that fail."""
+    failed = [judged.row.name for judged in card.rows if Verdict.FAIL in (judged.truth, judged.baseline)]
+    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    return STATUS[card.status] + (f" {', '.join(failed[:_NAMED])}{more}." if failed else "")
 
 
 def _row(judged: Judged) -> dict[str, object]:
@@ -53,5 +61,5 @@ def shown(value: float | None) -> str:
 
 def _reference(reference) -> str:
     if reference.side != "both":
-        return f"{'≤' if reference.side == 'at most' else '≥'} {shown(reference.value)}"
+        return f"{'|x| ≤' if reference.side == 'at most' else '≥'} {shown(reference.value)}"
     return f"{shown(reference.value)} ± {reference.tolerance:.2g}"

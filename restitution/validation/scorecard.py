@@ -200,8 +200,12 @@ def read_so_far(folder: Path) -> SoFar:
         return SoFar(program=program_hash(), results={})
     try:
         return SoFar.model_validate(read_json(path))
-    except ValidationError as error:
-        raise InputError(*defects_of(error, str(path))) from None
+    except (ValidationError, InputError) as error:
+        defects = error.defects if isinstance(error, InputError) else defects_of(error, str(path))
+        again = Defect(
+            "is of no use any more: leave --resume out, then all rows are measured anew", file=str(path)
+        )
+        raise InputError(*defects, again) from None
 
 
 def _processor() -> str:

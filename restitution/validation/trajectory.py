@@ -28,7 +28,7 @@ from restitution.errors import Defect, InputError
 from restitution.impacts.bounces import Bounces, filmed
 from restitution.impacts.find import Impacts, find_impacts
 from restitution.impacts.shipped import impacts_of
-from restitution.stokes import Speed
+from restitution.stokes import H_FILM, Speed
 from restitution.tracks import Track, contacts
 from restitution.validation.rebound import Errors, quantities, record_bounces, references
 from restitution.validation.row import Kind, Reference, Row, Values, near
@@ -122,7 +122,9 @@ def score(
     """
     errors = errors if errors is not None else Errors(grid=0.0)
     found = find_impacts(track, case.conditions, Speed.FAR, record=name, kind="simulated")
-    approach = _approach(found, case, name)
+    # A fall from rest has its greatest speed before the first rebound, towards the wall.
+    downward = track.quantity == "velocity" and float(np.max(track.value)) > -float(np.min(track.value))
+    approach = _approach(found, case, name, downward)
     own: list[str] = []
     if track.quantity == "velocity":
         track = integrated(track, found)
@@ -132,6 +134,8 @@ def score(
     if first_s is not None and not track.time_s[0] <= first_s <= track.time_s[-1]:
         rule = f"is outside the trajectory, {track.time_s[0]:g} to {track.time_s[-1]:g} s"
         raise InputError(Defect(rule, file=name, field="--first-contact", value=f"{first_s:g} s"))
+    if first_s is not None:
+        _check_touch(track, first_s, case.conditions.sphere.diameter, name)
     bounces = filmed(track, case.conditions, first_s)
     _check_clock(bounces, case, name)
     values = _values(bounces, track, found, case)
@@ -159,6 +163,14 @@ def from_rest(track: Track, diameter: float, stretched: bool = False) -> tuple[T
     return track, []
 
 
+def _check_touch(track: Track, first_s: float, diameter: float, name: str) -> None:
+    """Refuse a first contact in the middle of a flight; a stretched one ends at the wall, to within the film."""
+    gap = float(np.interp(first_s, track.time_s, track.value)) / diameter
+    if gap > H_FILM:
+        rule = f"the sphere is {gap:.2g} d above the wall then: this is no contact, nor the end of one"
+        raise InputError(Defect(rule, file=name, field="--first-contact", value=f"{first_s:g} s"))
+
+
 def _row(name: str, case: Case, errors: Errors) -> Row:
     r = datasets.resource(case.record)
     why = (
@@ -176,17 +188,18 @@ def _first(case: Case) -> Reference:
     return near(APPROACH, row["impact_speed_m_s"], absolute=2 * row["impact_speed_sigma_m_s"])
 
 
-def _approach(found: Impacts, case: Case, name: str) -> float:
+def _approach(found: Impacts, case: Case, name: str, downward: bool) -> float:
     """The speed of the first impact; refused where it cannot be that of the record."""
+    hint = "; or are these velocities counted downwards (--direction down)?" if downward else ""
     if not found.rows:
         why = f": {found.notes[-1]}" if found.notes else ""
-        raise InputError(Defect(f"has no contact that could be evaluated{why}", file=name))
+        raise InputError(Defect(f"has no contact that could be evaluated{why}{hint}", file=name))
     speed, theirs = found.rows[0]["impact_speed_m_s"], _first(case).value
     if not 1 / ANOTHER <= speed / theirs <= ANOTHER:
         St = found.rows[0]["stokes"]
         rule = (
             f"meets the wall at {speed:.4g} m/s, St {St:.3g}, where {case.record} has {theirs:.4g} m/s, St "
-            f"{St * theirs / speed:.3g}: wrong unit of length or time (--unit, --time-unit), or another case"
+            f"{St * theirs / speed:.3g}: wrong unit of length or time (--unit, --time-unit), or another case{hint}"
         )
         raise InputError(Defect(rule, file=name))
     return float(speed)
@@ -194,8 +207,10 @@ def _approach(found: Impacts, case: Case, name: str) -> float:
 
 def _check_clock(bounces: Bounces, case: Case, name: str) -> None:
     """Refuse a flight that gravity does not make: units of length and time that are both wrong keep a speed."""
+    if not (len(bounces.intervals_s) and len(record_bounces(case.record).intervals_s)):
+        return
     theirs = record_bounces(case.record).intervals_s[0]
-    if len(bounces.intervals_s) and bounces.intervals_s[0] > _LASTING * theirs:
+    if bounces.intervals_s[0] > _LASTING * theirs:
         rule = (
             f"flies {bounces.intervals_s[0]:.3g} s between its first two contacts, where {case.record} has "
             f"{theirs:.3g} s at the same speed: wrong units of length and time (--unit, --time-unit)"
@@ -242,7 +257,7 @@ def assert_trajectory(
     track: Track | str | Path | Mapping[str, Sequence[float]],
     case: str,
     *,
-    name: str = "trajectory",
+    name: str = "",
     grid_error: float = 0.0,
     allow: Mapping[str, float] | None = None,
     may_lack: Collection[str] = (),
@@ -255,7 +270,7 @@ def assert_trajectory(
         ``t [s],gap [mm]`` or ``t/sqrt(d/g),gap/d`` does; or columns ``time_s`` and ``gap_m`` (or
         ``velocity_m_s``), in SI.
     case : name of a record or a shipped case, such as "gondret-st152".
-    name : what the message calls it.
+    name : what the message calls it; its file, if it is one, else "trajectory".
     grid_error : relative error of a first apex by the solver's own grid, from its own convergence study.
     allow : by label, such as ``{"apex 1, mm": 0.5}``, the greatest deviation from the record, in its unit, in
         place of the record's error: to hold a known shortfall where it is.
@@ -274,13 +289,17 @@ def assert_trajectory(
 
     __tracebackhide__ = True  # pytest then shows the test's line and the message alone
     held_against, notes = case_of(case), ()
-    if isinstance(track, str | Path):
-        found = read_trajectory(track, held_against.conditions)
-        track, notes = found.track, found.notes
-    elif not isinstance(track, Track):
-        track = Track.from_table(pd.DataFrame(track))
+    name = name or (str(track) if isinstance(track, str | Path) else "trajectory")
+    try:
+        if isinstance(track, str | Path):
+            found = read_trajectory(track, held_against.conditions)
+            track, notes = found.track, found.notes
+        elif not isinstance(track, Track):
+            track = Track.from_table(pd.DataFrame(track))
+        scored = score(name, track, held_against, Errors(grid=grid_error), notes=notes)
+    except InputError as error:  # anew, without the frames of what read it
+        raise InputError(*error.defects) from None
     allowed = dict(allow or {})
-    scored = score(name, track, held_against, Errors(grid=grid_error), notes=notes)
     truth = {r.label: r for r in scored.judged.row.truth()}
     for field, labels in (("allow", allowed), ("may_lack", may_lack)):
         unknown = [label for label in labels if label not in truth]

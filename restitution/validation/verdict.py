@@ -12,7 +12,8 @@ not evaluated   there is no value: never a pass
 ==============  ===========================================================================================
 baseline
 ==============  ===========================================================================================
-pass            every value is the baseline's, within at least five times the spread that was measured
+pass            every value is the baseline's, within at least five times the spread that was measured; what should
+                be zero keeps its bound
 fail            a value has moved, towards the truth or away from it: ``--bless`` takes it where that is meant
 not evaluated   there is no value, no baseline, or one of another case
 ==============  ===========================================================================================
@@ -28,7 +29,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from restitution.validation.row import Row
+from restitution.validation.row import Reference, Row
 
 
 class Verdict(StrEnum):
@@ -42,6 +43,9 @@ class Verdict(StrEnum):
 
 _WORST_LAST = (Verdict.PASS, Verdict.KNOWN_MISS, Verdict.NOT_EVALUATED, Verdict.FAIL)
 
+NIL = 0.01
+"""Of its bound, below which a value is one that should be zero, and no magnitude."""
+_READ_TO = 1e-6
 ALL_PASS, FAILED, BAD_INPUT, NOT_EVALUATED = 0, 1, 2, 3
 """Exit statuses; 2 is that of any input that cannot be used."""
 
@@ -77,8 +81,8 @@ def against_baseline(
 ) -> dict[str, Verdict]:
     """The verdict of each reference against what the baseline has, by label.
 
-    What should be zero, or need only be reached, is held by its bound, unless it is known to miss it; but only
-    where the baseline has the row: without one nothing is known of what was.
+    What should be zero is held by its bound, unless it is known to miss it; but only where the baseline has the
+    row: without one nothing is known of what was. A magnitude with a bound is held by that and by what it was.
     """
     found = {}
     for reference in row.truth():
@@ -86,13 +90,27 @@ def against_baseline(
         if held is None or values is None or label not in values:
             found[label] = Verdict.NOT_EVALUATED
         elif reference.side != "both" and label not in row.known:
-            found[label] = Verdict.PASS if reference.holds(values[label]) else Verdict.FAIL
+            within = reference.holds(values[label]) and not (
+                label in held and _magnitude(reference, held[label].value) and _moved(reference, values, held)
+            )
+            found[label] = Verdict.PASS if within else Verdict.FAIL
         elif label not in held:
             found[label] = Verdict.NOT_EVALUATED
         else:
-            moved = abs(values[label] - held[label].value)
-            found[label] = Verdict.PASS if moved <= held[label].tolerance else Verdict.FAIL
+            found[label] = Verdict.FAIL if _moved(reference, values, held) else Verdict.PASS
     return found
+
+
+def _magnitude(reference: Reference, value: float) -> bool:
+    """Whether a value with a bound is more than the rounding and small errors of what should be zero."""
+    return abs(value) >= NIL * abs(reference.value)
+
+
+def _moved(reference: Reference, values: Mapping[str, float], held: Mapping[str, Held]) -> bool:
+    """Whether a value is not what it was; of one with a bound, a millionth of that is no change."""
+    was = held[reference.label]
+    room = was.tolerance if reference.side == "both" else max(was.tolerance, _READ_TO * abs(reference.value))
+    return not abs(values[reference.label] - was.value) <= room
 
 
 def status(verdicts: Iterable[tuple[Verdict, Verdict]], strict: bool = False) -> int:

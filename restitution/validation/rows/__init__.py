@@ -25,6 +25,12 @@ class Setting:
     anew: bool = True
 
 
+def kept_runs() -> Path:
+    """Where runs are kept: in a checkout its ``reports/runs``, else those that are installed with the program."""
+    own, installed = Setting().runs, Path(__file__).parents[2] / "_runs"
+    return installed if installed.is_dir() and not own.is_dir() else own
+
+
 def all_rows(setting: Setting | None = None) -> dict[str, Row]:
     """All rows by name, in their order. The solver is loaded with them."""
     from restitution.validation.rows import (

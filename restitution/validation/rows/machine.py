@@ -7,9 +7,11 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
+from numba import get_num_threads
 
 from lbm.problems.roofline import share_of_roofline
 from restitution.runs.resolved import ResolvedRun
@@ -72,9 +74,26 @@ def threads(blocks: int) -> Values:
     return {"difference": float(np.abs(np.subtract(*found)).max())}
 
 
+ENOUGH = 0.35
+"""Share of the roofline that a kernel which is not vectorised never has."""
+_ATTEMPTS = 5
+_OWN = 0.9
+"""Of the cores that the threads ask for: with less, other work has the rest, and the share says nothing."""
+
+
 def speed(cells: int, rounds: int) -> Values:
-    """Share of the memory's roofline."""
-    return {"of roofline": share_of_roofline(cells, rounds)}
+    """Share of the memory's roofline, the best of some attempts: other work can only lower it."""
+    best, threads = 0.0, get_num_threads()
+    for _ in range(_ATTEMPTS):
+        clock, processor = time.perf_counter(), time.process_time()
+        best = max(best, share_of_roofline(cells, rounds))
+        had = (time.process_time() - processor) / (time.perf_counter() - clock) / threads
+        if best >= ENOUGH:
+            break
+    else:
+        if had < _OWN or os.getloadavg()[0] > 1.5 * threads:
+            raise NotEvaluatedError(f"the machine is busy with other work (share {best:.2f} of {_ATTEMPTS} tries)")
+    return {"of roofline": best}
 
 
 ROWS = (
@@ -89,8 +108,9 @@ ROWS = (
     Row(
         "speed", "cell updates over those that the memory could feed, 96^3 cells, float64, two steps a sweep",
         Kind.REGRESSION, "in-place read and write of the same populations, in the same run",
-        (at_least("of roofline", 0.35),),
-        "0.5 to 1.2 was measured on idle and on busy machines; a kernel that is not vectorised has 0.2 to 0.3",
+        (at_least("of roofline", ENOUGH),),
+        "0.65 to 1.2 was measured on idle machines, 0.2 to 0.5 on busy ones (the best of five tries counts); a "
+        "kernel that is not vectorised has 0.1 to 0.3",
         speed, {"cells": 96, "rounds": 9}, Depth.QUICK,
     ),
 )  # fmt: skip

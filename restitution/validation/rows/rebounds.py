@@ -94,7 +94,9 @@ class Scored:
         given = read_case(case)
         kept = ensure(given, self.runs, self.anew) if self.again else read_run(given, self.runs)
         if kept is None:
-            raise NotEvaluatedError(f"no kept run in {self.runs / case}: --depth full makes it")
+            raise NotEvaluatedError(
+                f"no kept run in {self.runs / case}: --runs FOLDER says where, --depth full makes it"
+            )
         if kept.stale:
             changed = ", ".join(kept.changed)
             raise NotEvaluatedError(f"the kept run is stale ({changed} changed since): --depth full makes it anew")

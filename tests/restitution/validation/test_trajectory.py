@@ -10,6 +10,8 @@ import pytest
 from restitution import datasets
 from restitution.cli import main
 from restitution.errors import InputError
+from restitution.impacts.shipped import impacts_of
+from restitution.stokes import Speed
 from restitution.tracks import Track
 from restitution.validation import assert_trajectory, case_of, score, trajectory_page
 from restitution.validation.trajectory_file import read_trajectory
@@ -55,6 +57,34 @@ def test_a_record_agrees_with_itself():
     scored = score("record", datasets.load_track(CASE.record), CASE)
     assert scored.missed == []
     assert scored.values["rms, d"] == pytest.approx(0, abs=1e-9)
+
+
+def test_a_record_of_one_flight_can_be_scored():
+    case = case_of("gondret-st27")
+    speed = impacts_of(case.record, Speed.FAR).rows[0]["impact_speed_m_s"]
+    record = datasets.load_track(case.record)
+    after = record.time_s > 0
+    fall = np.arange(-0.03, 0, float(np.median(np.diff(record.time_s))))
+    track = Track(
+        np.r_[fall, record.time_s[after]], np.r_[-speed * fall, record.value[after]], "gap", record.sigma
+    )
+    assert score("theirs", track, case).values["apex 1, mm"] == pytest.approx(
+        1e3 * record.value[after].max(), rel=0.02
+    )
+
+
+def test_a_first_contact_in_the_middle_of_a_flight_is_refused():
+    time, gap, *_ = flown()
+    track = Track.from_table(pd.DataFrame({"time_s": time, "gap_m": gap}))
+    assert score("theirs", track, CASE, first_s=1e-4).values["apex 1, mm"] > 0
+    with pytest.raises(InputError, match=r"no contact"):
+        score("theirs", track, CASE, first_s=0.05)
+
+
+def test_velocities_counted_downwards_are_told_from_another_impact():
+    time, _, velocity, *_ = flown()
+    with pytest.raises(InputError, match="--direction down"):
+        score("theirs", Track.from_table(pd.DataFrame({"time_s": time, "velocity_m_s": -velocity})), CASE)
 
 
 def test_what_it_does_not_reach_is_named_and_never_passes():

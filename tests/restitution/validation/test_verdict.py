@@ -53,6 +53,14 @@ def test_a_bound_is_held_by_itself_where_the_baseline_has_the_row():
     assert against_baseline(known, {"a": 1.8}, {"a": Held(1.5, 0.01)}) == {"a": FAIL}
 
 
+@pytest.mark.parametrize(
+    ("was", "now", "expected"),
+    [(0.5, 0.5 + 1e-7, PASS), (0.5, 0.51, FAIL), (0.5, 0.49, FAIL), (0.5, 1.1, FAIL), (1e-5, -9e-5, PASS)],
+)
+def test_a_magnitude_with_a_bound_must_be_what_it_was_and_a_nought_need_not(was, now, expected):
+    assert against_baseline(row(at_most("a", 1.0)), {"a": now}, {"a": Held(was, 1e-12)}) == {"a": expected}
+
+
 def test_no_value_never_passes():
     r = row(near("a", 1.0, absolute=0.1), at_most("b", 1.0))
     assert set(against_truth(r, None).values()) == {NOT}
