@@ -240,6 +240,8 @@ def in_words(r: Rebounds) -> list[str]:
             f"{_holds(h.at_a_ratio)}; across all {_holds(h.every)}. With added mass in the Stokes number, St*: "
             f"{h.with_added_mass.text}."
         )
+        if h.ranking.failed:
+            words.append(f"Under {h.definition} {', '.join(h.ranking.failed)} cannot be fitted to them.")
         if score.label in EXPONENTIAL:
             words.append(_slope(score.label, r.of(h.definition)))
     return words
