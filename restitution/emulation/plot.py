@@ -78,7 +78,7 @@ def _single(ax: Axes, t: Told, draws: np.ndarray, before: float | None) -> None:
     share, edges = np.histogram(draws, _edges(t))
     ax.stairs(share / share.sum() * _BINS, edges, color="black", lw=1.4, label="posterior")
     ax.axhline(1.0, color="black", ls=":", lw=1.0, label="prior")
-    ax.axvspan(*t.intervals[0.68], color="0.85")
+    ax.axvspan(*t.intervals[0.68], color="0.85", zorder=0)
     ax.axvline(t.median, color="black", lw=1.0)
     if before is not None:
         ax.axvline(before, color="black", ls="--", lw=1.0, label="before")
