@@ -107,6 +107,10 @@ class Sweep:
         self.contents = {name: self._content(name) for name in bases}
         self.varied = _ways(self.asked.vary, self.file)
         """What is given to each key that varies, by its dotted name."""
+        twice = sorted(set(_leaves(self.asked.case)) & set(self.varied))
+        rule = "stands in [case] and in [vary]: every run has the value of one of them; leave the other out"
+        if twice:
+            raise InputError(*(Defect(rule, file=self.file, field=name) for name in twice))
 
     def _content(self, name: str) -> dict[str, Any]:
         """A base with what all runs have in place of its own."""

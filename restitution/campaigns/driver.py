@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from restitution.campaigns.fork import Fork, forks
-from restitution.campaigns.manifest import ATTEMPTS, FAILED, FINISHED, LOST, Manifest, line
+from restitution.campaigns.keeping import spoiled
+from restitution.campaigns.manifest import ATTEMPTS, FAILED, FINISHED, LOST, RETRY, Manifest, line
 from restitution.campaigns.plan import RUNS, Planned
 from restitution.campaigns.run import ELSEWHERE, REFUSED, STOP, Outcome, Task, perform
 from restitution.errors import StoppedError
@@ -27,6 +28,8 @@ _SECONDS_ELSEWHERE = 2.0
 _SECONDS_TO_APPEAR = 20.0
 _DEATHS = ("KilledWorker", "WorkerLost", "ManagerLost")
 """Names of what Dask and Parsl raise where a run's worker is gone."""
+_NAMED = 4
+"""Runs that a line names."""
 _DIED = "its worker died or was stopped"
 
 
@@ -74,6 +77,11 @@ def drive(
     manifest = Manifest(folder)
     for defect in manifest.defects:
         say(f"doubt: {defect}")
+    again = spoiled(folder, runs, manifest)
+    if again:
+        manifest.append(line(run, RETRY) for run in again)
+        count = "a finished run" if len(again) == 1 else f"{len(again)} finished runs"
+        say(f"results of {count} are gone or changed, made again: {', '.join(again[:_NAMED])}")
     left = [run for run in runs if not manifest.of(run.run).over]
     shared, alone = forks(left, folder, program, threads) if share else ([], left)
     if shared:

@@ -86,6 +86,33 @@ def read_plan(folder: Path) -> list[Planned]:
     return found
 
 
+def replaced(folder: Path, runs: Iterable[Planned], mean_it: bool = False) -> str | None:
+    """What is to be said of runs that the folder's plan has and this one has not; None where there are none.
+
+    Raises :class:`InputError` where that plan is another study's, unless one says to ``mean_it``: no run is in
+    both, and model and record, or all keys varied, are others.
+    """
+    try:
+        before = read_plan(folder)
+    except InputError:  # none, or damaged: it is written anew
+        return None
+    runs = list(runs)
+    left_out = {r.run for r in before} - {r.run for r in runs}
+    kinds = [{(r.model, r.record) for r in plan} for plan in (before, runs)]
+    names = [{name for r in plan for name in r.parameters} for plan in (before, runs)]
+    same_study = kinds[0] & kinds[1] and names[0] & names[1]
+    if len(left_out) == len(before) > 0 and not same_study and not mean_it:
+        rule = (
+            f"is the folder of another sweep, of {len(before)} runs that vary {', '.join(sorted(names[0]))}: name "
+            "another --out, or --replace its plan"
+        )
+        raise InputError(Defect(rule, file=str(folder)))
+    if not left_out:
+        return None
+    count = "1 run" if len(left_out) == 1 else f"{len(left_out)} runs"
+    return f"{count} of the earlier plan not in this one; 'restitution sweep clean {folder}' removes them"
+
+
 def _plain(case: Case, name: str) -> Case:
     """The case under the run's name, without what is said of its base to readers."""
     return case.model_copy(update={"name": name, "study": None, "prediction": False})

@@ -14,10 +14,11 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from multiprocessing import resource_tracker
 from typing import Any
 
 _SECONDS_TO_STOP = 30.0
@@ -42,13 +43,17 @@ class LocalProcesses(Executor):
         """In the slot with the least to do."""
         for futures in self._pending:
             futures[:] = [f for f in futures if not f.done()]
+        with _starting():
+            return self._submit(_call, fn, *args, **kwargs)
+
+    def _submit(self, fn: Callable, /, *args: Any, **kwargs: Any) -> Future:
         slot = min(range(self.slots), key=lambda i: len(self._pending[i]))
         try:
-            future = self._pools[slot].submit(_call, fn, *args, **kwargs)
+            future = self._pools[slot].submit(fn, *args, **kwargs)
         except BrokenProcessPool:
             self._pools[slot].shutdown(wait=False)
             self._pools[slot] = self._pool()
-            future = self._pools[slot].submit(_call, fn, *args, **kwargs)
+            future = self._pools[slot].submit(fn, *args, **kwargs)
         self._pending[slot].append(future)
         return future
 
@@ -78,26 +83,47 @@ def _begin(threads: int, parent: int) -> None:
     with suppress(OSError, AttributeError):
         os.setpgid(0, 0)  # the terminal's Ctrl-C is for the process that started this one
     signal.signal(signal.SIGINT, _stop)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     sys.unraisablehook = _unraised
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
 
 
+@contextmanager
+def _starting() -> Iterator[None]:
+    """While a process may be started: here a Ctrl-C waits until it is, there until it is ready for one."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # which would let signals through again when it starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 _within = threading.Event()
 """Set while a task is at work."""
+_over = threading.Event()
+"""Set once an interrupt has come between two tasks: no more are begun."""
 
 
 def _call(fn: Callable, /, *args: Any, **kwargs: Any) -> Any:
     _within.set()
     try:
+        if _over.is_set():
+            raise KeyboardInterrupt
         return fn(*args, **kwargs)
     finally:
         _within.clear()
 
 
 def _stop(*_: object) -> None:
-    """What interrupts a task; between two there is nothing to be stopped."""
+    """What interrupts a task, or the next one where none is at work."""
     if _within.is_set():
         raise KeyboardInterrupt
+    _over.set()
 
 
 def _unraised(what: Any) -> None:

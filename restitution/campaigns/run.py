@@ -79,24 +79,24 @@ def perform(task: Task | Approach) -> Outcome:
         with sole_writer(folder, CLAIM):
             if isinstance(task, Approach):
                 return _approach(task, folder)
-            found = _finished(folder)
+            found = seconds_of(folder)
             if found is not None:
                 return Outcome(task.run, FINISHED, seconds=found, made=False)
             remark = _make(task, folder)
             _to_disk(folder)
-            return Outcome(task.run, FINISHED, remark, seconds=_finished(folder) or 0.0)
+            return Outcome(task.run, FINISHED, remark, seconds=seconds_of(folder) or 0.0)
     except HeldError as error:
         return Outcome(task.run, ELSEWHERE, str(error))
     except DivergedError as error:
         return Outcome(task.run, DIVERGED, str(error))
     except (InputError, StoppedError, OSError) as error:
-        message = str(error).replace("\n", "; ")
+        message = str(error).replace("\n", "; ").replace(f"{task.run}: ", "")
         if any(text in message for text in _NO_ROOM):
             return Outcome(task.run, STOP, message)
         return Outcome(task.run, REFUSED if isinstance(error, InputError) else FAILED, message)
 
 
-def _finished(folder: Path) -> float | None:
+def seconds_of(folder: Path) -> float | None:
     """Seconds of the finished run in a folder, if its files are as they were written; None where there is none."""
     try:
         record = read_record(folder)

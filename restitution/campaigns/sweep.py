@@ -11,7 +11,7 @@ from restitution.campaigns.cluster import Engine, dask_engine
 from restitution.campaigns.design import Sweep
 from restitution.campaigns.driver import Progress, drive
 from restitution.campaigns.manifest import Manifest
-from restitution.campaigns.plan import Planned, planned, write_plan
+from restitution.campaigns.plan import Planned, planned, replaced, write_plan
 from restitution.campaigns.processes import LocalProcesses
 from restitution.campaigns.share import shared_out
 from restitution.campaigns.table import write_tables
@@ -33,6 +33,7 @@ def sweep(
     threads: int = 1,
     only: Collection[str] = (),
     share: bool = True,
+    replace: bool = False,
     show: Callable[[Progress], None] = lambda _: None,
     say: Callable[[str], None] = lambda _: None,
 ) -> Manifest:
@@ -49,6 +50,7 @@ def sweep(
     scheduler : ``tcp://...`` or ``slurm:FILE`` in place of that (:mod:`restitution.campaigns.cluster`).
     processes, threads : of this machine, and of each run; by default as many as cores and memory allow, of one.
     share : whether runs that differ in film and contact alone share their approach; results are the same.
+    replace : whether the folder may be that of another study, whose plan this one takes the place of.
     only : names of the runs that are made; the tables are not written then.
     show, say : told how the sweep stands, and lines that are to be known.
 
@@ -63,8 +65,11 @@ def sweep(
     wanted = [run for run in runs if not only or run.run in only]
     unknown = set(only) - {run.run for run in runs}
     if unknown:
-        raise InputError(Defect("is no run of this sweep", file=str(file), value=min(unknown)))
+        raise InputError(Defect("is no run of this sweep", file=str(file), field="--only", value=min(unknown)))
     check_folder(folder)
+    gone = replaced(folder, runs, replace)
+    if gone:
+        say(gone)
     if executor is not None:
         most = at_once or getattr(executor, "_max_workers", None) or _AT_ONCE
         given = Engine(executor, lambda: most, lambda: None, f"{type(executor).__name__}, {most} at a time")
@@ -97,7 +102,9 @@ def _drive(
         say=say,
     )
     if len(wanted) == len(runs):
-        write_tables(folder)
+        doubtful = write_tables(folder)
+        if doubtful:
+            say(doubtful)
     return manifest
 
 

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from restitution import datasets
+from restitution.campaigns.keeping import spoiled
 from restitution.campaigns.manifest import FINISHED, Manifest
 from restitution.campaigns.plan import RUNS, Planned, read_plan
 from restitution.errors import Defect, InputError
@@ -36,25 +37,33 @@ TABLE, IMPACTS = "runs.csv", "impacts.csv"
 _DIGITS = "%.12g"
 
 
-def write_tables(folder: Path, speed: str = Speed.FAR) -> None:
+def write_tables(folder: Path, speed: str = Speed.FAR) -> str | None:
     """Write both tables of a sweep's folder, the impacts by one definition of ``speed``.
 
-    Raises :class:`InputError` where it is none.
+    Returns what is to be said of runs without any impact. Raises :class:`InputError` where it is no sweep's
+    folder, or results of finished runs are gone or changed.
     """
     runs, manifest = read_plan(folder), Manifest(folder)
+    rule = (
+        "is not as this finished run left it, or gone: the same 'restitution sweep SWEEP.toml' as before makes it "
+        f"again; 'restitution sweep retry {folder}' leaves it out until then"
+    )
+    gone = [Defect(rule, file=str(folder / RUNS / run)) for run in spoiled(folder, runs, manifest)]
+    if gone:
+        raise InputError(*gone)
     names = list(dict.fromkeys(name for run in runs for name in run.parameters))
     of_records = any(run.record is not None for run in runs)
     own = ["run", "state", "model", *(["record"] if of_records else [])]
     headings = [*own, *names, "track", "seconds", "attempts", "message"]
     rows = [_row(run, names, manifest, of_records) for run in runs]
     columns = list(datasets.schema("impact").columns)
-    impacts = [
-        [row.get(name, "") for name in columns]
-        for run in runs
-        if manifest.of(run.run).state == FINISHED
-        for row in _impacts(folder, run)
-        if row["speed_definition"] == speed
-    ]
+    impacts, finished, without, others = list[list[str]](), 0, 0, False
+    for run in (r for r in runs if manifest.of(r.run).state == FINISHED):
+        its = _impacts(folder, run)
+        of_speed = [[row.get(name, "") for name in columns] for row in its if row["speed_definition"] == speed]
+        impacts += of_speed
+        finished, without = finished + 1, without + (not of_speed)
+        others |= bool(its) and not of_speed
     contents: dict[str, str | bytes] = {
         TABLE: rows_text(headings, rows, _DIGITS),
         IMPACTS: rows_text(columns, impacts),
@@ -64,6 +73,15 @@ def write_tables(folder: Path, speed: str = Speed.FAR) -> None:
         joined = impacts_of(folder)
         runs_of(folder).to_parquet(folder / "runs.parquet")
         joined.to_parquet(folder / "impacts.parquet")
+    if not without:
+        return None
+    found = f"doubt: {without} of {finished} finished runs without an impact in {IMPACTS}: "
+    if others:
+        return f"{found}of the speed {str(speed)!r} there is none, of another --speed there is"
+    return (
+        f"{found}the trajectory ends before a contact, or too soon after it to tell what came of it; let it be "
+        "longer by run.after_contact or run.duration"
+    )
 
 
 def runs_of(folder: Path) -> pd.DataFrame:
@@ -108,11 +126,5 @@ def _cell(value: Any) -> Any:
 
 def _impacts(folder: Path, run: Planned) -> list[dict[str, str]]:
     path = folder / RUNS / run.run / "impacts.csv"
-    try:
-        with path.open(newline="", encoding="utf-8") as stream:
-            return list(csv.DictReader(stream))
-    except FileNotFoundError:
-        rule = (
-            f"is gone, of a run that was finished: 'restitution sweep retry {folder}' has the next sweep make it"
-        )
-        raise InputError(Defect(rule, file=str(path))) from None
+    with path.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))

@@ -103,12 +103,20 @@ def run(args: argparse.Namespace) -> None:
 
 
 def _command(args: argparse.Namespace) -> str:
-    """What makes the page again, but for options of reading."""
+    """What makes the page again."""
     words = ["restitution", "calibrate-solver", args.runs]
     for option, given in (("--record", args.record), ("--held-out", args.held_out)):
         words += [option, *given] if given else []
     words += [w for name, (low, high) in args.prior for w in ("--prior", f"{name}={low:g}:{high:g}")]
     words += [w for name, value in args.before for w in ("--before", f"{name}={value:g}")]
+    for option in ("conditions", *options.TRACK):
+        value = getattr(args, option)
+        words += (
+            []
+            if value is None
+            else [f"--{option.replace('_', '-')}", f"{value:g}" if isinstance(value, float) else value]
+        )
+    words += [w for name, own in args.column for w in ("--column", f"{name}={own}")]
     return shlex.join([*words, *(["--seed", str(args.seed)] if args.seed else []), "--out", args.out])
 
 

@@ -71,7 +71,7 @@ def run_show(args: argparse.Namespace) -> None:
     """Print what a case says, in SI, in dimensionless numbers, and as the lattice is told."""
     case = _case(args.case)
     doubt_aside(case.conditions, args.case)
-    show_facts([*_conditions(case), *_numbers(case), *_lattice(case)])
+    show_facts([*_conditions(case), *_numbers(case), *_lattice(case, args.case)])
 
 
 def _case(given: str) -> Case:
@@ -131,7 +131,7 @@ def _numbers(case: Case) -> list[tuple[str, str]]:
     ]
 
 
-def _lattice(case: Case) -> list[tuple[str, str]]:
+def _lattice(case: Case, file: str) -> list[tuple[str, str]]:
     """What the resolved solver is told; nothing for a case that it cannot run."""
     if case.numerics is None or case.reference_speed is None:
         return [("lattice", "none: no [numerics] or reference speed")]
@@ -143,7 +143,7 @@ def _lattice(case: Case) -> list[tuple[str, str]]:
 
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        setup = set_up(case)
+        setup = set_up(case, file)
     advice = [] if case.name in names() else [("doubt", f"{w.message}: it runs, less exactly") for w in told]
     flow = setup.flow
     whole = "a quarter of the box" if setup.mirrors else "the whole box"

@@ -13,6 +13,10 @@ _MOST_DIGITS = 9
 _TRACK_COLUMNS = {"time_s": "time", "gap_m": "position", "velocity_m_s": "velocity"}
 
 
+TRACK = ("settings", "unit", "time_unit", "fps", "pixel", "direction", "wall", "point", "particle")
+"""What :func:`add_track` declares."""
+
+
 def add_columns(parser: argparse.ArgumentParser) -> None:
     """``--column COLUMN=NAME``, repeatable: the file's own names; gathered in ``args.column`` as pairs."""
     parser.add_argument(

@@ -14,14 +14,46 @@ if TYPE_CHECKING:
     from restitution.campaigns.manifest import Manifest
     from restitution.campaigns.plan import Planned
 
-_ASKED = ("status", "retry", "clean", "table")
+_ASKED = {
+    "status": "Say how the runs of a sweep's folder stand: those not finished, each with its message, those whose "
+    "results are gone or changed, and how many there are of each.",
+    "retry": "Have runs that diverged, failed or were given up tried again, and finished ones whose results are "
+    "gone or changed: the next 'restitution sweep SWEEP.toml --out DIR' makes them.",
+    "clean": "Remove from a sweep's folder, for good: all results of runs that its plan has no more, checkpoints "
+    "and parts of files of runs that are over, approaches once all runs are over. What a process is at is left.",
+    "table": "Write runs.csv and impacts.csv of what a sweep's folder has by now; --speed far, contact or window: "
+    "the impact speed by which impacts.csv has the impacts (far).",
+}
+"""What a sweep's folder is asked, and what that does."""
 _SHOWN = 40
+_GONE = "results gone or changed"
+
+
+class _Help(argparse.Action):
+    """Help on what a folder is asked, where that stands before it; else on the command."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option: str | None = None,
+    ) -> None:
+        asked = getattr(namespace, "what", None)
+        if asked in _ASKED:
+            speed = " [--speed far|contact|window]" if asked == "table" else ""
+            one = argparse.ArgumentParser(usage=f"{parser.prog} {asked} DIR{speed}", description=_ASKED[asked])
+            one.add_argument("folder", metavar="DIR", help="the sweep's folder")
+            parser = one
+        parser.print_help()
+        parser.exit()
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     """Declare ``sweep SWEEP.toml`` and ``sweep status|retry|clean|table DIR``."""
     parser = commands.add_parser(
         "sweep",
+        add_help=False,
         help="many runs of one case with keys varied, on the processes of this machine or on a cluster",
         description="Make the runs that a sweep's file asks for, those not finished yet: the same command "
         "goes on after whatever stopped it. Or ask a sweep's folder: 'status DIR' says how its runs stand, 'retry "
@@ -30,6 +62,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog="Each run is known by its content, so that a sweep's file may be changed: only new runs are made. "
         "Several commands may work on one folder, on machines that share it.",
     )
+    parser.add_argument("-h", "--help", action=_Help, nargs=0, help="show this help message and exit")
     parser.add_argument(
         "what", metavar="SWEEP.toml", nargs="?", help="a sweep's file; or status, retry, clean, table"
     )
@@ -55,6 +88,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         action="store_true",
         help="run each from its start, also where runs differ only in what acts from the film on (film, contact, "
         "e_dry, roughness) and could begin from one approach; the results are the same",
+    )
+    parser.add_argument(
+        "--replace", action="store_true", help="take the place of another sweep's plan in the folder; runs stay"
     )
     parser.add_argument("--only", metavar="RUN", action="append", help="make this run alone; may be repeated")
     parser.add_argument("--list", action="store_true", help="list the runs that the file asks for; make none")
@@ -91,6 +127,8 @@ def run(args: argparse.Namespace) -> int | None:
 
 
 def _make(args: argparse.Namespace) -> int | None:
+    if not args.list and not args.dry_run:
+        _say(f"{args.what}: planning its runs")  # before what is slow to load
     from restitution.campaigns.design import Sweep
     from restitution.campaigns.plan import planned, read_plan
     from restitution.campaigns.progress import SweepProgress
@@ -114,6 +152,7 @@ def _make(args: argparse.Namespace) -> int | None:
                 threads=args.threads,
                 only=args.only or (),
                 share=not args.no_forks,
+                replace=args.replace,
                 show=progress.update,
                 say=progress.say,
             )
@@ -167,29 +206,32 @@ def _ask(what: str, folder: Path, speed: str) -> int | None:
         tried = retry(folder, runs, manifest)
         show(f"{tried} runs will be tried again by 'restitution sweep SWEEP.toml --out {folder}'")
     elif what == "clean":
-        removed = clean(folder, runs, manifest)
-        show(f"{removed / 1e6:.1f} MB removed")
+        removed, size = clean(folder, runs, manifest)
+        what = ", ".join(f"{count} {name}" for name, count in removed.items()) or "nothing to remove"
+        show(f"{what}: {size / 1e6:.1f} MB removed" if removed else what)
     else:
-        write_tables(folder, speed)
+        doubtful = write_tables(folder, speed)
+        if doubtful:
+            _say(doubtful)
         return _end(folder, runs, manifest)
     return None
 
 
 def _status(folder: Path, runs: list[Planned], manifest: Manifest) -> None:
     from restitution.campaigns.driver import counts
-    from restitution.campaigns.keeping import under_way
+    from restitution.campaigns.keeping import spoiled, under_way
     from restitution.campaigns.manifest import FINISHED
 
-    at_it = under_way(folder, runs, manifest)
+    at_it, gone = under_way(folder, runs, manifest), spoiled(folder, runs, manifest)
     rows = [
         (
             r.run,
-            "under way" if r.run in at_it else manifest.of(r.run).shown,
+            "under way" if r.run in at_it else _GONE if r.run in gone else manifest.of(r.run).shown,
             _parameters(r),
-            manifest.of(r.run).message,
+            "the next sweep makes it again" if r.run in gone else manifest.of(r.run).message,
         )
         for r in runs
-        if manifest.of(r.run).state != FINISHED
+        if manifest.of(r.run).state != FINISHED or r.run in gone
     ]
     if rows:
         show_rows(("run", "state", "parameters", "message"), rows[:_SHOWN])
@@ -197,7 +239,10 @@ def _status(folder: Path, runs: list[Planned], manifest: Manifest) -> None:
         show(
             f"and {len(rows) - _SHOWN} more that are not finished; all runs by 'restitution sweep table {folder}'"
         )
-    show(_counted(counts(manifest, runs)) + (f"; {len(at_it)} under way" if at_it else ""))
+    found = counts(manifest, runs)
+    if gone:
+        found |= {FINISHED: found[FINISHED] - len(gone), _GONE: len(gone)}
+    show(_counted(found) + (f"; {len(at_it)} under way" if at_it else ""))
 
 
 def _counted(found: dict[str, int]) -> str:

@@ -3,9 +3,10 @@
 Read :mod:`.runs_table` (a table of runs, of any solver), :mod:`.flown` (the flight of one run), :mod:`.registered`
 (flights as vectors that change smoothly with the parameters), :mod:`.emulator` (their principal components by
 Gaussian processes), :mod:`.emulator_check` (how well it predicts runs it has not seen), :mod:`.likelihood` (how
-probable the frames of a record are), :mod:`.emulated` (all of that for one record), :mod:`.calibration` (the
-posterior, what it says and what is doubtful), :mod:`.held_out` (records predicted, before and after),
-:mod:`.solver_file` (``solver.json``), :mod:`.plot` and :mod:`.page`.
+probable the frames of a record are), :mod:`.simulated` (whether runs are of its fluid and sphere),
+:mod:`.emulated` (all of that for one record), :mod:`.held_out` (records predicted, before and after), :mod:`.told`
+(what a posterior says, and what is doubtful), :mod:`.calibration`, :mod:`.solver_file` (``solver.json``),
+:mod:`.plot` and :mod:`.page`.
 """
 
 from restitution.emulation.calibration import Calibration, calibrate

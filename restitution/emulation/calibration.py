@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.estimation.maximum import LEVELS, Maximum
+from restitution.calibration.estimation.maximum import Maximum
 from restitution.calibration.estimation.parameters import Flat, Parameter, log_prior
 from restitution.calibration.estimation.posterior import Posterior, sample
 from restitution.calibration.reading.reading import Reading
@@ -24,49 +24,13 @@ from restitution.doubts import Doubt
 from restitution.emulation.emulated import Emulated, read_all
 from restitution.emulation.held_out import Predicted, predicted
 from restitution.emulation.runs_table import Runs
+from restitution.emulation.told import Discrepancy, Told, discrepancy_of, doubts_of, told_of
 from restitution.errors import Defect, InputError
 
 Bounds = Mapping[str, tuple[float, float]]
 
-SAYS_NOTHING = 0.85
-"""Width of the 68 % interval over that of the prior from which on the records say nothing about a parameter."""
-EDGE = 0.05
-"""Part of the prior's width at each end that is looked at for a best point beyond the runs."""
-PRESSED = 2.5
-"""Times as much probability there as in the prior from which on it is taken to lie beyond."""
-_LARGE = 3.0
-"""Discrepancy over the error of a reading from which on the solver does not meet a record."""
 _ROUNDS, _POINTS, _BEST = 25, 400, 60
 """Of the search for the start."""
-
-
-@dataclass(frozen=True)
-class Told:
-    """What the records say of one parameter; intervals by level; ``share``: width of its 68 % over the prior's."""
-
-    name: str
-    prior: tuple[float, float]
-    logarithmic: bool
-    median: float
-    intervals: Mapping[float, tuple[float, float]]
-    share: float
-    pressed: str | None
-    """``low`` or ``high`` where the best values lie at that end of the runs, or beyond it."""
-
-    @property
-    def says_nothing(self) -> bool:
-        """Whether the posterior is as wide as the prior."""
-        return self.share > SAYS_NOTHING
-
-
-@dataclass(frozen=True)
-class Discrepancy:
-    """Of one record: what the solver lacks, sigma_u in diameters, correlation time in ms; each median and 68 %."""
-
-    record: str
-    sigma_d: tuple[float, float, float]
-    tau_ms: tuple[float, float, float]
-    reading_d: float
 
 
 @dataclass(frozen=True)
@@ -129,11 +93,11 @@ def calibrate(
     posterior = posterior_of(parameters, mine, seed, say)
     p = len(parameters)
     draws = posterior.draws[:, :p]
-    told = tuple(_told(x, draws[:, j]) for j, x in enumerate(parameters))
+    told = tuple(told_of(x, draws[:, j]) for j, x in enumerate(parameters))
     x = np.stack([_inner(t, draws[:, j]) for j, t in enumerate(told)], axis=1)
     correlation = np.atleast_2d(np.corrcoef(x, rowvar=False))
     discrepancies = tuple(
-        _discrepancy(e, posterior.draws[:, p + 3 * k : p + 3 * k + 3]) for k, e in enumerate(mine)
+        discrepancy_of(e, posterior.draws[:, p + 3 * k : p + 3 * k + 3]) for k, e in enumerate(mine)
     )
     rng = np.random.default_rng(seed + 1)
     prior_draws = np.stack([_uniform(x, rng, 400) for x in parameters], axis=1)
@@ -144,7 +108,7 @@ def calibrate(
     doubts = [
         *group.doubts,
         *(d for e in (*mine, *theirs) for d in e.doubts()),
-        *_doubts(group, told, discrepancies),
+        *doubts_of(group, told, discrepancies, predictions),
     ]
     return Calibration(
         group, mine, theirs, told, correlation, draws, posterior, discrepancies, predictions, before,
@@ -268,47 +232,3 @@ def _uniform(p: Parameter, rng: np.random.Generator, n: int) -> NDArray:
 
 def _inner(t: Told, values: NDArray) -> NDArray:
     return np.log(values) if t.logarithmic else values
-
-
-def _told(p: Parameter, draws: NDArray) -> Told:
-    intervals = {
-        level: tuple(map(float, np.quantile(draws, [0.5 * (1 - level), 0.5 * (1 + level)]))) for level in LEVELS
-    }
-    low, high = map(p.inward, p.bounds)
-    inner = [p.inward(v) for v in intervals[LEVELS[0]]]
-    place = (np.array([p.inward(v) for v in draws]) - low) / (high - low)
-    ends = {"low": np.mean(place < EDGE), "high": np.mean(place > 1 - EDGE)}
-    worst = max(ends, key=ends.__getitem__)
-    return Told(
-        p.name, p.bounds, p.scale == "log", float(np.median(draws)), intervals,
-        float((inner[1] - inner[0]) / (LEVELS[0] * (high - low))),
-        worst if ends[worst] > PRESSED * EDGE else None,
-    )  # fmt: skip
-
-
-def _discrepancy(e: Emulated, unknowns: NDArray) -> Discrepancy:
-    d = e.registration.d
-    at = [0.5, 0.16, 0.84]
-    sigma, tau = np.quantile(unknowns[:, 1] / d, at), np.quantile(1e3 * unknowns[:, 2], at)
-    return Discrepancy(e.name, tuple(map(float, sigma)), tuple(map(float, tau)), e.frames.reading / d)
-
-
-def _doubts(group: Runs, told: Sequence[Told], discrepancies: Sequence[Discrepancy]) -> list[Doubt]:
-    doubts = []
-    for t in told:
-        if t.pressed:
-            end, value = ("lower", t.prior[0]) if t.pressed == "low" else ("upper", t.prior[1])
-            rule = (
-                f"{t.name}: the best values lie at the {end} end of what was run or allowed, {value:g}, or "
-                "beyond: intervals end there for want of runs; widen the design"
-            )
-            doubts.append(Doubt("edge", rule, group.file))
-    for x in discrepancies:
-        if x.sigma_d[0] > _LARGE * x.reading_d:
-            rule = (
-                f"no parameters make the solver meet the record: it stays {x.sigma_d[0]:.2g} d (68 %: "
-                f"{x.sigma_d[1]:.2g} to {x.sigma_d[2]:.2g}) off, where a reading has {x.reading_d:.2g} d; the "
-                "intervals have that in them"
-            )
-            doubts.append(Doubt("discrepancy", rule, x.record))
-    return doubts

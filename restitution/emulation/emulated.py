@@ -18,6 +18,7 @@ from restitution.emulation.flown import Flown, flight_of
 from restitution.emulation.likelihood import FramesLikelihood
 from restitution.emulation.registered import Registration
 from restitution.emulation.runs_table import Run, Runs
+from restitution.emulation.simulated import of_simulated
 from restitution.errors import Defect, InputError
 from restitution.impacts.bounces import filmed
 from restitution.impacts.find import find_impacts
@@ -88,6 +89,7 @@ class Emulated:
                 f"others {most} times: frames after that have no say; run longer, or leave them out"
             )
             yield Doubt("short runs", rule, self.name)
+        yield from of_simulated(self.runs, self.emulator.names, self.name, self.recording.conditions)
 
     @cached_property
     def measured(self) -> dict[str, tuple[float, float]]:

@@ -10,7 +10,8 @@ gap, s the scale of the picture, t_1 the time of the first contact. e is the err
 components leave out; u is what the solver lacks at any theta, its discrepancy (Kennedy & O'Hagan, J. R. Stat.
 Soc. B 63 (2001) 425), and the drift of the camera: an Ornstein-Uhlenbeck process of the unknown standard
 deviation sigma_u and correlation time tau. b, s and w, in which y is linear about its mean, are integrated out;
-t_1, sigma_u and tau are unknowns beside theta, with the priors of :mod:`restitution.calibration.trajectories`.
+t_1, sigma_u and tau are unknowns beside theta, with the priors of :mod:`restitution.calibration.trajectories`, but
+that sigma_u may be as great as the gaps themselves: a solver may miss a record as a whole.
 
 The e_eff of the bounces do not enter beside the frames: they are made of the same ones and would count twice.
 Frames after the last contact that all runs reach have no say, nor have those before the approach of the runs.
@@ -67,10 +68,17 @@ class FramesLikelihood:
             raise InputError(Defect(rule, file=r.name))
         return cls(r, emulator, registration, use, Normal(float(at), interval))
 
+    @cached_property
+    def furthest(self) -> float:
+        """Upper end in m of the prior of sigma_u: the greatest gap of the record or of the mean of the runs."""
+        runs = self.registration.d * float(self.registration.shapes(self.emulator.mean).max())
+        return max(runs, float(self.recording.gap_m[self.use].max()))
+
     @property
     def nuisances(self) -> tuple[Parameter, ...]:
         """t_1, sigma_u and tau."""
         (low, high), (short, long) = np.exp(noise_prior(self.recording))
+        high = max(high, self.furthest)
         name, t = self.recording.name, self.touch
         reach = (t.mean - 5 * t.sigma, t.mean + 5 * t.sigma)
         return (

@@ -30,7 +30,8 @@ def files(table: str, found: Sequence[Calibration], command: str) -> dict[str, s
     fit = solver_fit(table, found)
     page = render(
         "solver.html.j2", title="A solver calibrated by its runs", command=command, groups=groups, fit=fit,
-        recommended=recommended(found), gains=[gain(c) for c in found], sklearn=metadata.version("scikit-learn"),
+        recommended=recommended(found), missed=missed(found), gains=[gain(c) for c in found],
+        sklearn=metadata.version("scikit-learn"),
     )  # fmt: skip
     return {"index.html": page, FILE: fit.text(), **contents}
 
@@ -48,6 +49,11 @@ def recommended(found: Sequence[Calibration]) -> list[dict[str, object]]:
         for c in found
         for t in c.told
     ]  # fmt: skip
+
+
+def missed(found: Sequence[Calibration]) -> list[str]:
+    """Records from which the solver is farther than its parameters move it."""
+    return list(dict.fromkeys(x.record for c in found for x in c.discrepancies if x.elsewhere))
 
 
 def said(c: Calibration, name: str) -> str:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from restitution.emulation.calibration import Calibration, Told
+from restitution.emulation.calibration import Calibration
 from restitution.emulation.emulated import Emulated
 from restitution.emulation.held_out import Predicted
+from restitution.emulation.told import Told
 from restitution.report.drawing import Drawing, as_text, save, style
 
 if TYPE_CHECKING:
@@ -82,14 +83,16 @@ def _single(ax: Axes, t: Told, draws: np.ndarray, before: float | None) -> None:
     ax.axvline(t.median, color="black", lw=1.0)
     if before is not None:
         ax.axvline(before, color="black", ls="--", lw=1.0, label="before")
-    ax.set_ylim(bottom=0)
+    ax.set_ylim(0, 1.08 * max(1.0, float(share.max()) / share.sum() * _BINS))
 
 
 def _pair(ax: Axes, c: Calibration, column: Told, row: Told, x: np.ndarray, y: np.ndarray) -> None:
     share, ex, ey = np.histogram2d(x, y, [_edges(column), _edges(row)])
     # The draws are many, but not so many in each cell: a means over neighbours shows the region, not its noise.
     for axis in (0, 1):
-        share = (np.roll(share, 1, axis) + 2 * share + np.roll(share, -1, axis)) / 4
+        padded = np.pad(share, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode="edge")
+        left, right = (np.take(padded, range(k, k + share.shape[axis]), axis) for k in (0, 2))
+        share = (left + 2 * share + right) / 4
     ordered = np.sort(share.ravel())[::-1]
     mass = np.cumsum(ordered) / ordered.sum()
     levels = [float(ordered[np.searchsorted(mass, m)]) for m in _MASS]
@@ -167,8 +170,9 @@ def record(p: Predicted, d: float, gravity: float) -> Drawing:
             elinewidth=0.7, label=f"measured: {as_text(p.record)}",
         )  # fmt: skip
         top.set_ylabel(r"gap, $h/d$  [-]")
-        top.set_ylim(bottom=-0.05 * float(p.gap_m.max()) / d, top=1.35 * float(p.gap_m.max()) / d)
-        top.legend(fontsize=8, ncols=2, loc="upper right")
+        highest = max(float(x.max()) for x in (p.gap_m, p.after[4], p.before[2])) / d
+        top.set_ylim(-0.05 * highest, 1.05 * highest)
+        figure.legend(*top.get_legend_handles_labels(), fontsize=8, ncols=2, loc="outside upper center")
         low, high = (p.after[k] - p.gap_m for k in (0, 4))
         below.fill_between(t, low / d, high / d, color="0.75", lw=0)
         below.plot(t, (p.after[2] - p.gap_m) / d, "-", color="black", lw=1.2)

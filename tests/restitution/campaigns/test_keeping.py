@@ -9,7 +9,9 @@ from restitution.campaigns.keeping import retry
 from restitution.campaigns.manifest import FINISHED, Manifest, line
 from restitution.campaigns.plan import Planned
 from restitution.campaigns.table import write_tables
+from restitution.cli import main
 from restitution.errors import InputError
+from restitution.runs.record import RunRecord, digest
 
 RUNS = ("r000000000001", "r000000000002")
 HEADER = "record,impact,kind,outcome,speed_definition,e_eff\n"
@@ -23,9 +25,17 @@ def folder(tmp_path):
     for run in RUNS:
         place = tmp_path / "runs" / run
         place.mkdir(parents=True)
-        for name in ("trajectory.csv", "run.json"):
-            (place / name).touch()
-        (place / "impacts.csv").write_text(f"{HEADER}{run},1,simulated,rebound,far,0.8\n")
+        written = {
+            "trajectory.csv": "time_s,gap_m\n",
+            "impacts.csv": f"{HEADER}{run},1,simulated,rebound,far,0.8\n",
+        }
+        record = RunRecord(
+            model="point particle", case=run, date="2026-01-01", finished=True, seconds=1.0, threads=1, steps=1,
+            shape=(0, 0, 0), step_s=1e-4, numbers={}, contacts=(), code_hash="", case_as_run={},
+            files={name: digest(content) for name, content in written.items()},
+        )  # fmt: skip
+        for name, content in (written | {"run.json": record.text()}).items():
+            (place / name).write_text(content)
     Manifest(tmp_path).append(line(run, FINISHED, seconds=1.0) for run in RUNS)
     return tmp_path
 
@@ -39,10 +49,19 @@ def test_finished_runs_whose_results_are_there_are_left_as_they_are(folder):
     assert all(Manifest(folder).of(run).over for run in RUNS)
 
 
-@pytest.mark.parametrize("gone", ["", "impacts.csv", "run.json"])
-def test_a_finished_run_whose_results_are_gone_is_made_again_where_asked_for(gone, folder):
+@pytest.mark.parametrize("gone", ["", "impacts.csv", "run.json", "trajectory.csv", "emptied", "edited"])
+def test_a_finished_run_whose_results_are_gone_is_made_again_where_asked_for(gone, folder, capsys):
     place = folder / "runs" / RUNS[0]
-    (place / gone).unlink() if gone else shutil.rmtree(place)
+    if not gone:
+        shutil.rmtree(place)
+    elif gone == "emptied":
+        (place / "trajectory.csv").write_text("")
+    elif gone == "edited":
+        (place / "impacts.csv").write_text((place / "impacts.csv").read_text().replace("0.8", "0.9"))
+    else:
+        (place / gone).unlink()
+    assert main(["sweep", "status", str(folder)]) == 0
+    assert "1 finished, 1 results gone" in capsys.readouterr().out
     assert retry(folder, planned(), Manifest(folder)) == 1
     after = Manifest(folder)
     assert not after.defects

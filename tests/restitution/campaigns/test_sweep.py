@@ -85,6 +85,7 @@ def test_a_stokes_number_is_that_of_the_drive(tmp_path, through):
         ('design = "latin hypercube"\nruns = 6\n[vary]\nsphere.e_dry = [0.8]\n', "range"),
         ("", "vary"),
         ("[vary]\nfluid.viscosity = ['3 mm']\n", "fluid.viscosity"),
+        ("[vary]\nsphere.e_dry = [0.8]\n[case]\nsphere.e_dry = 0.9\n", "sphere.e_dry: stands in"),
         ("[vary]\nSt = [10.0]\n[case]\nrelease = { kind = 'rest', gap_d = 2.0 }\n", "from rest"),
     ],
 )
@@ -170,6 +171,26 @@ def test_finished_runs_are_not_made_again_even_if_their_line_is_lost(tmp_path):
     assert any("manifest.jsonl:2" in s for s in said)
     assert all(manifest.of(r.run).state == FINISHED for r in planned(Sweep(file).cases()))
     assert {p: p.stat().st_mtime_ns for p in (out / "runs").rglob("*.csv")} == before
+
+
+@pytest.mark.parametrize("spoil", [Path.unlink, lambda path: path.write_text("")])
+def test_results_that_somebody_removed_are_made_again_the_same(tmp_path, spoil):
+    out, file = tmp_path / "out", sweeps.write(tmp_path, sweeps.POINTS)
+    in_threads(file, out)
+    path = next((out / "runs").glob("*/trajectory.csv"))
+    before, said = path.read_bytes(), []
+    spoil(path)
+    in_threads(file, out, say=said.append)
+    assert path.read_bytes() == before
+    assert any(path.parent.name in text for text in said)
+
+
+def test_runs_without_an_impact_are_said_with_what_mends_it(tmp_path):
+    said, text = [], sweeps.POINTS + "[case]\nrun.after_contact = 0.001\n"
+    out = tmp_path / "out"
+    in_threads(sweeps.write(tmp_path, text), out, say=said.append)
+    assert len((out / "impacts.csv").read_text().splitlines()) == 1
+    assert any("6 of 6" in text and "run.after_contact" in text for text in said)
 
 
 def test_a_line_is_only_ever_added(tmp_path):
@@ -308,11 +329,40 @@ def test_a_case_that_is_refused_is_tried_once_and_retry_asks_again(tmp_path, cap
     assert sorted(s.over for s in Manifest(out).standing.values()) == [False, True]
 
 
-def test_clean_removes_what_no_plan_has(tmp_path):
+def test_a_plan_of_another_study_is_replaced_where_one_means_it(tmp_path):
     out = tmp_path / "out"
     in_threads(sweeps.write(tmp_path, sweeps.POINTS), out)
-    in_threads(sweeps.write(tmp_path, sweeps.POINTS.replace("0.8, ", "")), out)
+    plan = (out / "plan.jsonl").read_text()
+    head = 'base = "gondret_st152_10"\nmodels = ["point particle"]\n[vary]\n'
+    other = sweeps.write(tmp_path, head + "film.tension = [50e3]\n", "other.toml")
+    with pytest.raises(InputError, match="another sweep"):
+        in_threads(other, out)
+    assert (out / "plan.jsonl").read_text() == plan
+    grown = sweeps.write(tmp_path, head + "sphere.e_dry = [0.7]\nfilm.tension = [50e3]\n", "grown.toml")
+    in_threads(grown, out)
+    in_threads(other, out, replace=True)
+    assert len(runs_of(out)) == 1
+
+
+@pytest.mark.parametrize("asked", ["status", "retry", "clean", "table"])
+def test_help_is_of_what_a_folder_is_asked(asked, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["sweep", asked, "--help"])
+    assert end.value.code == 0
+    said = capsys.readouterr().out
+    assert f"sweep {asked} DIR" in said
+    assert "--scheduler" not in said
+
+
+def test_clean_removes_what_no_plan_has(tmp_path, capsys):
+    out = tmp_path / "out"
+    in_threads(sweeps.write(tmp_path, sweeps.POINTS), out)
+    said = []
+    in_threads(sweeps.write(tmp_path, sweeps.POINTS.replace("0.8, ", "")), out, say=said.append)
+    assert any(text.startswith("2 runs of the earlier plan") for text in said)
+    capsys.readouterr()
     assert main(["sweep", "clean", str(out)]) == 0
+    assert "2 runs that the plan has no more" in capsys.readouterr().out
     plan = [json.loads(text)["run"] for text in (out / "plan.jsonl").read_text().splitlines()]
     assert sorted(p.name for p in (out / "runs").iterdir()) == sorted(plan)
     assert len(pd.read_csv(out / "runs.csv")) == 4

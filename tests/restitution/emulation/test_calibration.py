@@ -10,7 +10,7 @@ import pytest
 from restitution.calibration.reading.reading import Reading
 from restitution.cli import main
 from restitution.emulation import calibrate, read_runs, read_solver
-from restitution.emulation.page import gain
+from restitution.emulation.page import files, gain
 from restitution.errors import InputError
 
 from .parabolas import CONDITIONS, design, gap, write_runs, write_track
@@ -77,6 +77,20 @@ def test_a_parameter_without_effect_is_named_so(runs, tmp_path):
     assert not told["e"].says_nothing
 
 
+def test_a_record_that_no_run_comes_near_is_missed_by_as_much_as_it_is(tmp_path):
+    """Runs of e from 0.70 to 0.86, a sphere of 0.45: apexes of 3 d where 1 d is filmed."""
+    group = read_runs(write_runs(tmp_path, design(14), truth=(0.45, 0.6)))[0]
+    found = calibrate(group, how=HOW)
+    lacks, after = found.discrepancies[0], found.predictions[0].rms_after_d
+    assert after > 0.4
+    # The deviation of a process is told to a factor of three by the few correlation times of a record.
+    assert after / 3 < lacks.sigma_d[0] < 3 * after
+    assert lacks.elsewhere
+    assert not lacks.bounded
+    assert {"edge", "discrepancy"} <= {d.name for d in found.doubts}
+    assert "not recommended" in files("runs.csv", [found], "")["index.html"]
+
+
 def test_too_few_runs_are_refused_and_few_doubted(runs, tmp_path):
     few = read_runs(altered(runs, tmp_path, lambda k, row: row if k < 5 else None))[0]
     with pytest.raises(InputError, match="5 runs"):
@@ -128,6 +142,7 @@ def test_the_command_writes_what_it_reads(runs, tmp_path, capsys):
     assert "unseen runs predicted" in capsys.readouterr().out
     fit = read_solver(out / "solver.json")
     assert fit.groups[0].recommended["e"] == pytest.approx(0.78, abs=0.01)
+    assert f"--conditions {conditions}" in (out / "index.html").read_text()
     assert "<svg" not in (out / "index.html").read_text()  # figures are images of their own
     content = json.loads((out / "solver.json").read_text())
     for change, field in (
