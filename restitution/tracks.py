@@ -91,15 +91,20 @@ def noise(time: NDArray, value: NDArray) -> float:
     standard deviation is that of one frame. The median over all fours ignores those across a contact. Positions
     on a pixel grid have at least the noise of that grid, its step over sqrt(12).
     """
+    sigma = np.median(np.abs(differences(time, value)[0])) / 0.6745
+    # Noise-free records keep a finite weight.
+    return float(max(sigma, grid_step(value) / np.sqrt(12), 1e-6 * np.ptp(value)))
+
+
+def differences(time: NDArray, value: NDArray) -> tuple[NDArray, NDArray]:
+    """The third divided difference of each four neighbours, and the four weights that it has of unit length."""
     t = np.lib.stride_tricks.sliding_window_view(time, 4)
     y = np.lib.stride_tricks.sliding_window_view(value, 4)
     distance = t[:, :, None] - t[:, None, :]
     distance[:, range(4), range(4)] = 1.0
     weight = 1.0 / distance.prod(axis=2)
     weight /= np.linalg.norm(weight, axis=1, keepdims=True)
-    sigma = np.median(np.abs((weight * y).sum(axis=1))) / 0.6745
-    # Noise-free records keep a finite weight.
-    return float(max(sigma, grid_step(value) / np.sqrt(12), 1e-6 * np.ptp(value)))
+    return (weight * y).sum(axis=1), weight
 
 
 def grid_step(value: NDArray) -> float:

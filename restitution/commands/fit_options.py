@@ -147,6 +147,7 @@ def reading_of(args: argparse.Namespace) -> Reading:
 
     if args.stokes is not None:
         convention(args.stokes)
+    own = {*args.free, *(name for name, _ in (*args.fix, *args.prior))}
     return Reading(
         stokes=args.stokes,
         speed=None if args.speed is None else Speed(args.speed),
@@ -156,6 +157,7 @@ def reading_of(args: argparse.Namespace) -> Reading:
         e_sigma=args.e_sigma,
         unphysical=args.allow_unphysical,
         axes=(args.x, args.y),
+        dry=args.e_dry is not None or "e_dry" in own,
         track=options.settings_of(args),
     )
 

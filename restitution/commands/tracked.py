@@ -71,7 +71,7 @@ class Tracked:
         e_dry = self.conditions.sphere.e_dry
         doubts = of_gain(list(rows.impact), rows.e_eff, rows.e_eff_sigma, e_dry, name)
         if self.kind == "measured" and e_dry is not None:
-            doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True)
+            doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True, sigma=rows.e_eff_sigma)
         return replace(found, doubts=[*found.doubts, *doubts])
 
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.tracks import Contacts, Track
+from restitution.tracks import GRAVITY, Contacts, Track
 
 _LEAST = 5
 """Frames that tell an acceleration."""
@@ -83,12 +83,22 @@ def approach(track: Track, contacts: Contacts) -> Fall | None:
     t, y = track.time_s[first.start : first.stop], track.value[first.start : first.stop]
     if len(t) < _LEAST:
         return None
-    begin = int(np.argmax(y)) if track.quantity == "gap" else 0
+    begin = _release(t, y, track.sigma) if track.quantity == "gap" else 0
     return (
         _fall(t[begin:], y[begin:], track, 2 if track.quantity == "gap" else 1)
         if len(t) - begin >= _LEAST
         else None
     )
+
+
+def _release(t: NDArray, y: NDArray, sigma: float) -> int:
+    """The frame with the greatest gap, or, of a sphere that is held there, one at about its release.
+
+    The noise of so many frames hides as much of a fall as lasts sqrt(2 h/g), twice that at a quarter of gravity.
+    """
+    noise = 2 * np.sqrt(2 * np.log(len(y))) * sigma
+    hidden = t[y >= np.max(y) - noise][-1] - 2 * np.sqrt(2 * noise / GRAVITY)
+    return max(int(np.argmax(y)), int(np.searchsorted(t, hidden)))
 
 
 def _fall(t: NDArray, y: NDArray, track: Track, order: int) -> Fall:
@@ -122,7 +132,7 @@ def begin_of_approach(track: Track, contacts: Contacts, terminal: float) -> Fall
     if track.quantity == "velocity":
         slow = np.flatnonzero(np.abs(y) > 0.5 * terminal)
     else:
-        begin = int(np.argmax(y))
+        begin = _release(t, y, track.sigma)
         t, y = t[begin:], y[begin:]
         s = max(len(t) // _PIECES, 1)
         slow = np.flatnonzero(np.abs(y[s:] - y[:-s]) > 0.5 * terminal * (t[s:] - t[:-s]))

@@ -14,9 +14,11 @@ import numpy as np
 from restitution.doubts import falls
 from restitution.doubts.clock import of_frames
 from restitution.doubts.doubt import Doubt
+from restitution.doubts.filled import of_filled
+from restitution.doubts.meeting import of_mirrored
 from restitution.doubts.pace import FAST, SLOW, of_pace
-from restitution.doubts.place import below, holes, still
-from restitution.doubts.stated import of_fluid, of_size
+from restitution.doubts.place import below, half_as_large, holes, still
+from restitution.doubts.stated import of_diameter, of_fluid, of_size
 from restitution.tracks import Contacts, Track, contacts
 
 if TYPE_CHECKING:
@@ -38,16 +40,18 @@ def _of_motion(track: Track, found: Contacts, conditions: Conditions) -> list[Do
     """Of a track that moves, the right way up, outside the film."""
     level, d = found.level or 0.0, conditions.sphere.diameter
     doubts = [
+        *of_mirrored(track, found, d),
         *_hovering(track, found, conditions),
         *(hole.doubt(track) for hole in holes(track, found, conditions)),
     ]
     broken = bool(doubts)
-    doubts += (of_frames(track, level, d) if not broken else []) + below(track, found, d)
+    doubts += (of_frames(track, level, d) or of_filled(track)) if not broken else []
+    doubts += [] if of_diameter(conditions) else below(track, found, d)
     # Frames at wrong times tell no acceleration, and an approach that is not whole no fall.
     if any(doubt.name in ("repeated", "renumbered") for doubt in doubts) or of_fluid(conditions):
         return doubts
     paced = of_pace(track, found, conditions, not broken)
-    return doubts + (paced or of_size(track, level, conditions) or _centre(track, conditions))
+    return doubts + (paced or _of_size(track, found, conditions))
 
 
 def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
@@ -104,8 +108,9 @@ def _convex(track: Track) -> bool:
 
 
 def _hovering(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
-    """Minima in mid-air."""
+    """Minima in mid-air that no noise makes, not even in the many frames of a sphere that is held."""
     d, wall = conditions.sphere.diameter, found.level or 0.0
+    value, depth = track.value, 2 * (np.sqrt(2 * np.log(len(track.value))) + 2) * track.sigma
     return [
         Doubt(
             "minimum",
@@ -113,17 +118,39 @@ def _hovering(track: Track, found: Contacts, conditions: Conditions) -> list[Dou
             f"{(track.value[i] - wall) / d:.2g} d: it is no contact and was left out (was the sphere lost there?)",
         )
         for i in found.hovering
+        if min(np.max(value[:i], initial=value[i]), np.max(value[i:])) - value[i] > depth
     ]
 
 
-def _centre(track: Track, conditions: Conditions) -> list[Doubt]:
-    d = conditions.sphere.diameter
-    if track.quantity != "gap" or not np.min(track.value) > CENTRE_D * d:
-        return []
+def _of_size(track: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
+    """A diameter, and a height of the wall or of the point, that do not fit where the sphere touches."""
+    level, d = found.level or 0.0, conditions.sphere.diameter
+    doubts = of_size(track, level, conditions) or of_diameter(conditions)
+    return doubts or half_as_large(found, d) or _centre(track, found, d)
+
+
+def _centre(track: Track, found: Contacts, d: float) -> list[Doubt]:
+    """A sphere that is seen to come near the wall and never to touch it."""
     lowest = float(np.min(track.value))
-    message = (
-        f"the gap never falls below {lowest:.3g} m, {lowest / d:.2g} d: is it the height of the centre? "
-        "It must be "
-        "that of the lowest point (--point centre)"
+    if track.quantity != "gap" or not lowest > CENTRE_D * d or not _seen(track, found):
+        return []
+    if _CENTRES[0] < lowest / d < _CENTRES[1]:
+        question = "is it the height of the centre? It must be that of the lowest point (--point centre)"
+    else:
+        question = "is the wall so much higher than stated (--wall, or --wall rest)?"
+    return [Doubt("centre", f"the gap never falls below {lowest:.3g} m, {lowest / d:.2g} d: {question}")]
+
+
+def _seen(track: Track, found: Contacts) -> bool:
+    """Whether any contact is seen in its frames: none where frames are missing at each, as behind an edge."""
+    step = np.diff(track.time_s)
+    some = [c for c in found.contacts if c.approach and c.rebound]
+    return found.level is not None or any(
+        np.max(step[max(c.approach[-1] - 1, 0) : c.rebound[0] + 1]) < _HIDDEN * np.median(step) for c in some
     )
-    return [Doubt("centre", message)]
+
+
+_HIDDEN = 4.0
+"""Usual times between frames for which a sphere is behind an edge at least."""
+_CENTRES = (0.4, 0.6)
+"""Diameters about the radius."""

@@ -54,14 +54,41 @@ def below(track: Track, found: Contacts, diameter: float) -> list[Doubt]:
     deep = float(np.median(lows)) - (found.level or 0.0)
     if not deep < -OVERLAP_D * diameter - DETECTION * track.sigma:
         return []
+    other = "are these heights of the centre above another level?"
+    if abs(deep / diameter + 0.5) < _HALF_D:
+        other = "are these heights of the lowest point (--point lowest)?"
+    elif abs(deep / diameter + 0.25) < _HALF_D / 2:
+        other = f"is the diameter {diameter / 2:.3g} m?"
     return [
         Doubt(
             "wall",
             f"the sphere goes {-deep:.2g} m, {-deep / diameter:.2g} d, into the wall before it turns: is the wall "
-            f"{-deep:.2g} m lower than stated (--wall, or --wall rest), or are these heights of the centre above "
-            "another level? Times, speeds and e are those of a contact that comes too early",
+            f"{-deep:.2g} m lower than stated (--wall, or --wall rest), or {other} "
+            "Times, speeds and e are those of a contact that comes too early",
         )
     ]
+
+
+_HALF_D = 0.04
+"""Diameters by which frames beside a contact are away from it."""
+
+
+def half_as_large(found: Contacts, diameter: float) -> list[Doubt]:
+    """A rest where a sphere of half the diameter has its centre above the wall: the double of it was stated."""
+    level = found.level
+    if level is None or abs(level / diameter + 0.25) > _ALIKE_D:
+        return []
+    return [
+        Doubt(
+            "diameter",
+            f"the sphere rests at a gap of {level:.3g} m, -d/4: is its diameter {diameter / 2:.3g} m, half of "
+            "what is stated, or the wall so much lower (--wall)?",
+        )
+    ]
+
+
+_ALIKE_D = 0.01
+"""Diameters by which a rest is where it would be by that."""
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
+from restitution.tracks import differences
 
 APPROACH = (1, 2, 3, 4, 5)
 REBOUND = (5,)
@@ -153,12 +154,11 @@ def points(tau: NDArray, value: NDArray, sigma: float, rebound: bool) -> Points:
     All frames of a long branch take part. Were they points of their own, the penalty for leaving frames out would
     outweigh what is near the contact.
     """
-    moments = tau[:, None] ** np.arange(_COEFFICIENTS)
+    moments, errors = tau[:, None] ** np.arange(_COEFFICIENTS), np.full(len(tau), sigma)
     if len(tau) > MOST_SINGLE:
         runs = np.flatnonzero(np.diff(value, prepend=np.nan) != 0)
-        if (
-            _COEFFICIENTS < len(runs) < len(tau) / 2
-        ):  # on a grid of pixels: frames that show the same one say it once
+        if _COEFFICIENTS < len(runs) < len(tau) / 2:  # on a grid: frames that show the same pixel say it once
+            errors = _on_pixels(tau, value, runs, sigma)
             moments, value = _means(moments, runs), value[runs]
     N = len(value)
     begins = np.arange(N)
@@ -167,7 +167,26 @@ def points(tau: NDArray, value: NDArray, sigma: float, rebound: bool) -> Points:
         farther = np.rint(np.geomspace(single, N, means + 1)).astype(int)[:-1]
         begins = np.unique(np.concatenate([np.arange(single), farther]))
     n = np.diff(np.append(begins, N))
-    return Points(_means(moments, begins), _means(value, begins), sigma / np.sqrt(n))
+    return Points(_means(moments, begins), _means(value, begins), np.sqrt(_means(errors**2, begins) / n))
+
+
+def _on_pixels(tau: NDArray, value: NDArray, runs: NDArray, sigma: float) -> NDArray:
+    """The errors of the middles of runs of frames that show the same pixel, each beginning at one of ``runs``.
+
+    A sphere that crosses a pixel within m frames has come in and gone out at times known to within a frame, so
+    that where it was meanwhile is known m times as well as one frame tells it. What the middles scatter beyond
+    that, by what neighbouring four of them leave of a parabola, is added. Where the sphere does not cross the
+    pixel, as where it turns or the branch ends, its place within it stays open.
+    """
+    frames = np.diff(np.append(runs, len(value)))
+    step = np.sign(np.diff(value[runs]))
+    crossed = np.zeros(len(runs), bool)
+    crossed[1:-1] = step[1:] == step[:-1]
+    ideal = np.where(crossed, sigma / frames, sigma)
+    left, weight = differences(_means(tau, runs), value[runs])
+    expected = np.sqrt(np.sum(weight**2 * np.lib.stride_tricks.sliding_window_view(ideal, 4) ** 2, axis=1))
+    excess = np.median(np.abs(left)) ** 2 / 0.6745**2 - np.median(expected) ** 2
+    return np.where(crossed, np.minimum(np.sqrt(ideal**2 + max(excess, 0.0)), sigma), sigma)
 
 
 def _means(values: NDArray, begins: NDArray) -> NDArray:

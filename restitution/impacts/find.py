@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.conditions import Conditions
-from restitution.doubts import Doubt, cleaned, holes, of_track
+from restitution.doubts import Doubt, Meeting, cleaned, holes, of_meetings, of_track
 from restitution.errors import InputError
 from restitution.impacts.speed import SpeedMeasure, Speeds, UnresolvedError
 from restitution.stokes import H_FILM, Speed, convention
@@ -98,6 +98,7 @@ def find_impacts(
     edge = h_film if Speed(speed) is Speed.FAR else None
     touches = _with_quoted_first(track, conditions, found, notes)
     lost = holes(track, found, conditions)
+    meetings: list[Meeting | None] = []
     for i, contact in enumerate(touches):
         if any(_holds(contact, hole.last) for hole in lost):
             notes.append(f"impact {i + 1}: frames are missing in which a whole flight lies")
@@ -110,12 +111,17 @@ def find_impacts(
             when = f"{t:.4g}" if abs(t) < 100 else f"{t:.4f}"  # a computer's clock needs all its digits
             notes.append(f"impact {i + 1}, near t = {when} s: {reason}")
             continue
+        if speeds.v_out is not None and speeds.early_s is not None:
+            meetings.append(Meeting.of(i + 1, speeds.early_s, speeds.v_in, speeds.v_out))
         if speeds.v_out is None and track.quantity == "velocity":
             speeds = _within_a_frame(speeds, track, conditions, np.random.default_rng([seed, i, 1]))
         rows.append(
             {"record": record, "impact": i + 1, "kind": kind} | _row(speeds, conditions, speed, edge, stokes)
         )
     doubts = [*clean.doubts, *of_track(track, found, conditions, record)]
+    if not doubts and kind == "measured":  # where frames are doubtful already, they are so at the contacts too
+        at_wall = of_meetings(track, found, [m for m in meetings if m is not None], conditions.sphere.diameter)
+        doubts = [replace(doubt, where=record) for doubt in at_wall]
     return Impacts(rows, track.sigma, notes, doubts, touches, measure)
 
 

@@ -47,7 +47,8 @@ class Speeds:
     """Draws of contact time, impact speed and rebound speed.
 
     Without a resolved rebound ``v_out`` is None and ``v_out_upper`` the speed of a free flight to the greatest
-    height that was seen or would have been missed.
+    height that was seen or would have been missed. ``early_s``: draws of the time by which the rebound leaves the
+    wall before the approach reaches it, both extrapolated; None where the frames do not tell it.
     """
 
     time_s: NDArray
@@ -55,6 +56,7 @@ class Speeds:
     v_out: NDArray | None
     v_out_upper: float | None
     note: str
+    early_s: NDArray | None = None
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ class SpeedMeasure:
             if contact.nearest is not None:
                 side = before if self._precedes(contact.nearest, before, after, rng) else after
                 side.insert(0, contact.nearest)
-            t_c, v_in, v_out = self._meet(before, after, rng)
+            t_c, v_in, v_out, early = self._meet(before, after, rng)
             v_in, v_out = _moving(v_in, "approach"), _moving(v_out, "rebound")
         except UnresolvedError as reason:
             # Of a flight that was not seen to come down nothing can be excluded.
@@ -109,7 +111,7 @@ class SpeedMeasure:
         if self.track.quantity == "velocity" and _lasts(before[0], after[0]):
             between = self.track.time_s[after[0]] - self.track.time_s[before[0]]
             note = f"contact lasts {1e3 * between:.2g} ms: its {after[0] - before[0] - 1} frames left out"
-        return Speeds(t_c, scale * v_in, scale * v_out, None, note)
+        return Speeds(t_c, scale * v_in, scale * v_out, None, note, early)
 
     def branches(self, contact: Contact) -> list[ReadBranch]:
         """What approach and rebound were read as, where the sampling resolves them, without the open frame."""
@@ -130,8 +132,10 @@ class SpeedMeasure:
         t_c, *_ = self._meet(before, after, rng)
         return self.track.time_s[frame] < np.nanmedian(t_c) if np.isfinite(t_c).any() else False
 
-    def _meet(self, before: list[int], after: list[int], rng: np.random.Generator) -> tuple[NDArray, ...]:
-        """Draws of the contact time, the speed of the approach and that of the rebound."""
+    def _meet(
+        self, before: list[int], after: list[int], rng: np.random.Generator
+    ) -> tuple[NDArray, NDArray, NDArray, NDArray | None]:
+        """Draws of the contact time, the speeds of approach and rebound, and by what one is before the other."""
         low, high = self.track.time_s[before[0]], self.track.time_s[after[0]]
         lasts = _lasts(before[0], after[0])
         overlap = self.track.quantity == "gap" and self._touching([*before[:2], *after[:2]]).any()
@@ -149,16 +153,21 @@ class SpeedMeasure:
                 beside = 2 * float(np.median(np.diff(self.track.time_s)))
                 tau = low - origin + rng.uniform(0, beside, DRAWS)
                 left = high - origin - rng.uniform(0, beside, DRAWS)
-            return origin + tau, -_slope(incoming, tau), _slope(outgoing, left)
+            return origin + tau, -_slope(incoming, tau), _slope(outgoing, left), None
         if overlap:  # a contact that lasts: each branch ends where its own gap does
             incoming[:, 0] -= self.level
             outgoing[:, 0] -= self.level
             tau, left = _root(incoming, np.zeros(DRAWS)), _root(outgoing, np.zeros(DRAWS))
-            return origin + tau, -_slope(incoming, tau), _slope(outgoing, left)
+            return origin + tau, -_slope(incoming, tau), _slope(outgoing, left), None
         tau = _root(incoming - outgoing, np.zeros(DRAWS))
         # Far from the frames that were fitted on both sides the branches do not meet.
         tau[np.abs(tau) > self.track.time_s[after[0]] - self.track.time_s[before[0]]] = np.nan
-        return origin + tau, -_slope(incoming, tau), _slope(outgoing, tau)
+        early = None
+        if self.speed is not Speed.WINDOW:
+            at_wall = (branch - self.level * np.eye(1, branch.shape[1]) for branch in (incoming, outgoing))
+            reaches, leaves = (_root(branch, np.zeros(DRAWS)) for branch in at_wall)
+            early = reaches - leaves
+        return origin + tau, -_slope(incoming, tau), _slope(outgoing, tau), early
 
     def _usable(self, frames: list[int], branch: str) -> NDArray:
         """The frames of a branch, nearest to the contact first, that the definition of speed admits."""
@@ -263,8 +272,13 @@ def _moving(speed: NDArray, branch: str) -> NDArray:
     """
     moves = speed > 0
     if np.mean(moves) < 0.9:
+        if np.mean(np.isnan(speed)) > np.mean(speed <= 0):
+            raise UnresolvedError(branch, _APART)
         raise UnresolvedError(branch, "has a speed that cannot be told from zero")
     return np.where(moves, speed, np.nan)
+
+
+_APART = "meets the other side nowhere near the contact, by the frames that are taken (--speed contact takes all)"
 
 
 def _value(coefficients: NDArray, tau: NDArray) -> NDArray:

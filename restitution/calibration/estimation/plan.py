@@ -12,6 +12,7 @@ from restitution.calibration.estimation.identifiability import check_data
 from restitution.calibration.estimation.likelihood import OFFSET, SCATTER, Likelihood
 from restitution.calibration.estimation.parameters import Earlier, Flat, HalfNormal, Normal, Parameter
 from restitution.calibration.estimation.rebound_model import ReboundModel
+from restitution.calibration.reading.impact_checks import NO_E_DRY
 from restitution.calibration.reading.observations import Observations
 from restitution.errors import Defect, InputError
 
@@ -153,8 +154,7 @@ class Plan:
                 raise InputError(Defect("must lie above 0 and be at most 1", field="e_dry", value=f"{given:g}"))
             return None, float(given)
         if not stated.all():
-            rule = "is not stated: fill the column e_dry, or give --e-dry VALUE, VALUE+-SIGMA or free"
-            raise InputError(Defect(rule, **o.place(int(np.argmin(stated))), field="e_dry"))
+            raise InputError(Defect(NO_E_DRY, **o.place(int(np.argmin(stated))), field="e_dry"))
         uncertain = np.isfinite(o.e_dry_sigma)
         if not uncertain.any():
             return None, o.e_dry

@@ -30,6 +30,7 @@ _NO_STOKES = (
     "which Stokes number this is, is not stated: --stokes st (rho_p v d/(9 mu)), st_star, st_d, st_18 or "
     "st_b, or the column stokes_convention"
 )
+NO_E_DRY = "is not stated: fill the column e_dry, or give --e-dry VALUE, VALUE+-SIGMA or free"
 _UNPHYSICAL = (
     "lies outside 0 to 1: a rebound faster than the impact, or towards the wall; if errors of measurement "
     "explain it, --allow-unphysical fits it as it is (dropping it would bias the fit)"
@@ -89,6 +90,12 @@ class TableCheck:
         if speed is None:
             self.defects.append(Defect(NO_SPEED, file=self.file))
         return speed
+
+    def dry(self) -> None:
+        """Where other definitions are missing, that of the dry restitution is asked for with them."""
+        asked = {d.rule for d in self.defects} & {NO_SPEED, _NO_STOKES}
+        if asked and not self.how.dry and self.table["e_dry"].isna().all():
+            self.defects.append(Defect(NO_E_DRY, file=self.file, field="e_dry"))
 
     def edge(self) -> float:
         """The edge of the film in diameters that the table, or the caller, states; else that of the package."""

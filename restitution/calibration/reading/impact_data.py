@@ -82,11 +82,29 @@ def _read_one(path: str, how: Reading) -> Observations:
         return from_track_file(foreign, how, _digest(path))
     _known_columns(dict.fromkeys(how.columns, "--column"))
     foreign = foreign.whole() if how.track.particle is None else foreign.of_particle(str(how.track.particle))
+    own = _own_names(foreign.header) if not how.columns else {}
+    how = replace(how, columns=own) if own else how
     if not set(foreign.header) & {*read_schema(SCHEMA).columns, *how.columns.values()}:
         rule = f"{what_is_needed(foreign).rule}; of impacts: --column stokes=NAME --column e_eff=NAME"
         raise InputError(Defect(rule, file=path))
     defects, table = examine_table(foreign.text(), read_schema(SCHEMA), how.columns)
-    return from_table(table, how, path, _digest(path), defects)
+    found = from_table(table, how, path, _digest(path), defects)
+    if not own:
+        return found
+    note = f"{path}: '{own['stokes']}' is taken as stokes, '{own['e_eff']}' as e_eff (--column says otherwise)"
+    return replace(found, notes=(*found.notes, note))
+
+
+_OWN = {"stokes": ("st", "stokes", "stokes number"), "e_eff": ("e", "e_eff", "cor", "restitution")}
+"""What others call the two columns that a fit needs."""
+
+
+def _own_names(header: Sequence[str]) -> dict[str, str]:
+    """The columns of a table that names its Stokes number and restitution in other words, and none as here."""
+    lower = {name.strip().lower(): name for name in header}
+    found = {key: next((lower[name] for name in names if name in lower), None) for key, names in _OWN.items()}
+    known = {name: own for name, own in found.items() if own is not None}
+    return known if len(known) == len(_OWN) and list(known) != list(known.values()) else {}
 
 
 def _from_export(path: str, how: Reading, digest: str) -> Observations:

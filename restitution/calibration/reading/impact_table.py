@@ -45,6 +45,7 @@ def from_table(
     check = TableCheck(table, how, file, rows, form_defects)
     check.errors()
     speed, stokes, edge = check.speed(), check.stokes(per_row), check.edge()
+    check.dry()
     e = _restitution(table)
     check.restitution(e, none)
     if check.defects:

@@ -34,6 +34,8 @@ class Reading:
     """Admit e_eff above 1 or below 0."""
     axes: tuple[str, str] = ("stokes", "e_eff")
     """Which columns x and y of a digitised plot are."""
+    dry: bool = True
+    """Whether the caller states e_dry, or asks for none: a table without it is else asked for it with all else."""
     track: Settings = field(default_factory=Settings)
     """What the numbers of tracks mean, where their files do not say it."""
 

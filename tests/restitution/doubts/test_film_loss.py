@@ -53,3 +53,17 @@ def test_a_sphere_that_gains_speed_or_loses_less_than_dry_is_doubted(e, sigma, n
 def test_an_error_explains_what_is_above_the_dry_one():
     assert of_gain([1, 2, 3], [0.99, 1.1, np.nan], [0.02, 0.1, np.nan], 0.97) == []
     assert of_gain([1], [0.9], [0.001], None) == []
+
+
+@pytest.mark.parametrize("e", [0.93, 0.3])
+def test_one_impact_is_enough_where_its_error_leaves_no_doubt(e):
+    """At St 40 measured records lose a third; e_dry is known to a fiftieth."""
+    St = 40.0 if e > 0.5 else 200.0
+    assert of_impacts([St], [e], 0.97, sigma=[0.01])
+    assert of_impacts([St], [e], 0.97, sigma=[0.2]) == []
+    assert of_impacts([St], [e], 0.97) == []
+
+
+def test_an_impact_that_may_well_be_says_nothing_against_a_wrong_fluid():
+    assert of_impacts([40.0, 40.0], [0.93, 0.58], 0.97, sigma=[0.01, 0.01]) == []
+    assert of_impacts([1e4, 5e4], [0.95, 0.93], 0.97, sigma=[0.002, 0.002]) == []  # e_dry is not that sure
