@@ -71,7 +71,9 @@ class Tracked:
         e_dry = self.conditions.sphere.e_dry
         doubts = of_gain(list(rows.impact), rows.e_eff, rows.e_eff_sigma, e_dry, name)
         if self.kind == "measured" and e_dry is not None:
-            doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True, sigma=rows.e_eff_sigma)
+            # Of a record that is doubtful already an unusual K is likely a consequence.
+            sigma = None if found.doubts else rows.e_eff_sigma
+            doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True, sigma=sigma)
         return replace(found, doubts=[*found.doubts, *doubts])
 
 
