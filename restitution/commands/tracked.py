@@ -74,7 +74,14 @@ class Tracked:
             # Of a record that is doubtful already an unusual K is likely a consequence.
             sigma = None if found.doubts else rows.e_eff_sigma
             doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True, sigma=sigma)
-        return replace(found, doubts=[*found.doubts, *doubts])
+        doubts = [*found.doubts, *doubts]
+        if _DOWN in self.reading:  # then it is the other way that mends it
+            doubts = [replace(d, message=d.message.replace("--direction down", "--direction up")) for d in doubts]
+        return replace(found, doubts=doubts)
+
+
+_DOWN = "growing towards the wall"
+"""In the line that says how a track was read."""
 
 
 def edge(args: argparse.Namespace) -> float:

@@ -16,6 +16,8 @@ from restitution.units import SPEED, UnitError, quantity
 
 _SAME_CLOCK = 0.02
 """Part by which frames a second may differ from the rows a second of a file that has times of its own."""
+_FROM_A_DETECTOR = ("position", "distance")
+"""Words in the names of columns that detectors of motion write."""
 _MOST_NAMED = 30
 """Columns that a message names."""
 _SWAPPED = 0.1
@@ -56,7 +58,14 @@ def what_is_needed(table: ForeignTable, given: Settings | None = None) -> Defect
         image = " (rows of an image: --unit px --pixel LENGTH --wall ROW --direction down)"
         also.append("--unit m/s or what it is in" if speed else f"--unit m or what it is in{image}")
     if not speed and given.point is None:
-        also.append("--point centre where it is the height of the centre")
+        asked_for = table.program is not None and table.program.centre is None
+        also.append(
+            "--point centre or lowest" if asked_for else "--point centre where it is the height of the centre"
+        )
+    if value is not None and any(word in value.lower() for word in _FROM_A_DETECTOR) and given.direction is None:
+        also.append(
+            "--direction down --wall X where it grows towards the wall, as a distance from a detector above"
+        )
     rest = f", with {', '.join(also)}" if also else ""
     return Defect(f"{columns}: {' '.join(asked)}{rest}", file=table.file)
 

@@ -140,7 +140,8 @@ _BY_NAMES = (
 )  # fmt: skip
 
 TIMES = (
-    "time_s", "time", "t", "t_s", "time (s)", "t/t0", "t_star", "frame", "timestep", "step", "seconds", "slice",
+    "time_s", "time", "t", "t_s", "time (s)", "t/t0", "t_star", "flow-time", "flow time",
+    "frame", "timestep", "step", "seconds", "slice",
     "slice n°",
     "frame_idx", "frame number", "frame#", "zeit", "temps", "tempo", "tiempo", "czas",
     "время", "час", "χρόνος", "时间", "時間", "时刻", "時刻", "시간", "кадр", "帧", "フレーム",

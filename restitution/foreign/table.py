@@ -93,7 +93,8 @@ class ForeignTable:
         if own is not None:
             k, count = self.header.index(own), dict[str, int]()
             for _, cells in self.rows:
-                count[_bare(cells[k])] = count.get(_bare(cells[k]), 0) + 1
+                if name := _bare(cells[k]):  # what is linked to no track is none
+                    count[name] = count.get(name, 0) + 1
             return count
         tracks = [
             name.rpartition("/")[0] for name in self.header if name.rpartition("/")[2].lower() in ("x", "y", "z")
@@ -111,7 +112,11 @@ class ForeignTable:
         """One of them; raises :class:`InputError` with the list of what there is where it is not clear which."""
         known = self.particles()
         if particle is None and len(known) <= 1:
-            return self
+            own = self.particle_column
+            if own is None or self.sections or not known:
+                return self
+            k, (only,) = self.header.index(own), known
+            return replace(self, rows=[row for row in self.rows if _bare(row[1][k]) == only])
         if particle not in known:
             names = [f"{name} ({n} rows)" for name, n in list(known.items())[:_MOST_NAMED]]
             more = f" and {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
