@@ -48,7 +48,7 @@ def value_at(case, path):
 
 
 BESIDE = {("numerics.rates", f"{name}-by-place") for name in ("balanced", "quiet", "dhumieres")}
-"""The first is what probes have by default; no kept run has the others, which tests/lbm/test_rates_by_place.py holds."""
+"""The first is what probes have by default; no kept run has the others: tests/lbm/test_rates_by_place.py."""
 
 
 @pytest.mark.parametrize(("path", "value"), sorted(set(literals(Case)) - BESIDE), ids=lambda v: str(v))
