@@ -37,7 +37,7 @@ run.after_contact = {span}
 film.tension = ["50 kPa", 101325]
 sphere.e_dry = {e_dry}
 """
-LONG = {"cells": 10, "gap": 1.0, "height": 11.0, "span": 0.15, "e_dry": [0.8, 0.97]}
+LONG = {"cells": 14, "gap": 1.0, "height": 11.0, "span": 0.3, "e_dry": [0.8, 0.97]}
 SHORT = {"cells": 6, "gap": 1.0, "height": 6.0, "span": 0.005, "e_dry": [0.8, 0.9, 0.97]}
 APPROACH = {"cells": 14, "gap": 8.0, "height": 11.0, "span": 0.005, "e_dry": [0.8, 0.9, 0.97]}
 """A study of the first rebound: the way to the wall is 8 d, what is recorded after the contact some 0.5 d."""
