@@ -135,7 +135,7 @@ def streams(rates: str) -> list[Stream]:
     steady = [Stream(rates, re, d, width=width) for re in STEADY for d, width in boxes]
     whole = Stream(rates, 100.0, COARSE, speed=0.08, until=32.0, part=1)
     shedding = [
-        Stream(rates, SHEDDING, d, width=width, speed=0.08, until=40.0) for d, width in (*boxes[:3], (10, NARROW))
+        Stream(rates, SHEDDING, d, width=width, speed=0.08, until=40.0) for d, width in (*boxes, (10, NARROW))
     ]
     return [*steady, whole, *shedding]
 
@@ -194,7 +194,7 @@ def _show(known: dict[str, dict], rates: list[str], console: Console) -> None:
         own = {
             (s.diameter, s.width): known[s.name]["C_D"]
             for s in streams(name)
-            if s.reynolds == re and s.part == 0 and "C_D" in known[s.name]
+            if s.reynolds == re and s.part == 0 and "C_D" in known.get(s.name, {})
         }
         if not {(COARSE, NARROW), (COARSE, WIDE)} <= own.keys():
             continue  # the share of the box is not known where the coarsest grid diverges
