@@ -89,7 +89,7 @@ def under_way(folder: Path) -> bool:
 def results(folder: Path) -> dict[str, dict]:
     """All that runs have left, by run and file, but for date and seconds."""
     found = {}
-    for place in sorted((folder / "runs").iterdir()):
+    for place in sorted(p.parent for p in (folder / "runs").glob("*/run.json")):
         record = json.loads((place / "run.json").read_text())
         about = {k: v for k, v in record.items() if k not in ("date", "seconds", "seal", "threads")}
         files = {p.name: p.read_bytes() for p in place.iterdir() if p.suffix in (".csv", ".npz")}

@@ -37,6 +37,8 @@ _AHEAD = 2
 """Runs that each thread of a worker has, one of them waiting."""
 _SECONDS_GONE = 30.0
 """After which a job none of whose workers is there any more is over; a scheduler misses one for moments too."""
+_SECONDS_WITHOUT = 5.0
+"""Without any worker after which that is said: one that has died may be started anew by its own nanny."""
 _OURS = {"scheduler", "self", "job_cls", "loop", "asynchronous", "n_workers", "scheduler_cls", "job_kwargs"}
 """Keywords that are not the user's to give; ``jobs`` is ``n_workers`` in the words of SLURM."""
 
@@ -52,8 +54,11 @@ class Engine:
 
 
 @contextmanager
-def dask_engine(scheduler: str) -> Iterator[Engine]:
-    """The engine at an address, or of a file of SLURM's; raises :class:`InputError` for what cannot be had."""
+def dask_engine(scheduler: str, say: Callable[[str], None] = lambda _: None) -> Iterator[Engine]:
+    """The engine at an address, or of a file of SLURM's; raises :class:`InputError` for what cannot be had.
+
+    ``say`` is told once each time that no worker is there any more.
+    """
     _import()
     from distributed import Client
 
@@ -73,10 +78,10 @@ def dask_engine(scheduler: str) -> Iterator[Engine]:
         raise InputError(Defect(rule, field="--scheduler", value=scheduler)) from None
     try:
         workers = client.scheduler_info()["workers"].values()
-        told = f"{len(workers)} workers at {scheduler}"
+        told = f"{len(workers)} worker{'s' if len(workers) != 1 else ''} at {scheduler}"
         if any(w["nthreads"] > 1 for w in workers):
             told += "; runs share a process where a worker has several threads: start it with --nthreads 1"
-        yield _engine(client, told)
+        yield _engine(client, told, _Watch(client, scheduler, say))
     finally:
         with suppress(OSError, TimeoutError):
             client.close(timeout=2)
@@ -149,6 +154,29 @@ class Renewal:
                 del self._seen[name]
             self.cluster.sync(self.cluster.scale_down, over)
             self.cluster.scale(jobs=self.jobs)
+
+
+class _Watch:
+    """Says that runs wait for want of workers, which would look like runs that take long."""
+
+    def __init__(self, client: Client, scheduler: str, say: Callable[[str], None]):
+        self.client, self.scheduler, self.say = client, scheduler, say
+        self._since: float | None = None
+        self._said = False
+
+    def __call__(self) -> None:
+        """Look whether any worker is there; called now and then."""
+        with suppress(OSError, AttributeError):
+            if self.client.nthreads():
+                self._since, self._said = None, False
+                return
+        self._since = self._since or time.monotonic()
+        if not self._said and time.monotonic() - self._since > _SECONDS_WITHOUT:
+            self._said = True
+            self.say(
+                f"no worker at {self.scheduler}: the runs wait for one (dask worker {self.scheduler} --nthreads "
+                "1), or stop here by Ctrl-C"
+            )
 
 
 def _engine(client: Client, told: str, renew: Callable[[], None] = lambda: None) -> Engine:

@@ -7,6 +7,7 @@ the same command goes on. The death of a worker is not its run's fault as long a
 from __future__ import annotations
 
 import time
+import uuid
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
@@ -17,7 +18,7 @@ from restitution.campaigns.fork import Fork, forks
 from restitution.campaigns.keeping import spoiled
 from restitution.campaigns.manifest import ATTEMPTS, FAILED, FINISHED, LOST, RETRY, Manifest, line
 from restitution.campaigns.plan import RUNS, Planned
-from restitution.campaigns.run import ELSEWHERE, REFUSED, STOP, Outcome, Task, perform
+from restitution.campaigns.run import DEADLY, ELSEWHERE, REFUSED, STOP, Outcome, Task, perform, reached
 from restitution.errors import StoppedError
 from restitution.runs.record import FILE
 from restitution.runs.validity.program import program_hash
@@ -28,6 +29,7 @@ _SECONDS_ELSEWHERE = 2.0
 _SECONDS_TO_APPEAR = 20.0
 _DEATHS = ("KilledWorker", "WorkerLost", "ManagerLost")
 """Names of what Dask and Parsl raise where a run's worker is gone."""
+_AGAIN = "What is finished is kept: mend that, and give the same command again"
 _NAMED = 4
 """Runs that a line names."""
 _DIED = "its worker died or was stopped"
@@ -73,7 +75,7 @@ def drive(
     ------
     StoppedError : where the sweep cannot go on: no room on the disk, the executor gone. What is finished is kept.
     """
-    folder, program = folder.resolve(), program_hash()
+    folder, program, driver = folder.resolve(), program_hash(), uuid.uuid4().hex
     manifest = Manifest(folder)
     for defect in manifest.defects:
         say(f"doubt: {defect}")
@@ -83,12 +85,12 @@ def drive(
         count = "a finished run" if len(again) == 1 else f"{len(again)} finished runs"
         say(f"results of {count} are gone or changed, made again: {', '.join(again[:_NAMED])}")
     left = [run for run in runs if not manifest.of(run.run).over]
-    shared, alone = forks(left, folder, program, threads) if share else ([], left)
+    shared, alone = forks(left, folder, program, threads, driver) if share else ([], left)
     if shared:
         say(f"{len(left) - len(alone)} runs share {len(shared)} approach{'es' if len(shared) > 1 else ''}")
 
     def task(run: Planned, fork: str | None = None) -> Task:
-        return Task(run.run, run.model, run.case, str(folder / RUNS / run.run), program, threads, fork)
+        return Task(run.run, run.model, run.case, str(folder / RUNS / run.run), program, threads, fork, driver)
 
     state = _State(manifest, Progress(len(runs) - len(left), len(runs)), say)
     state.todo.extend(shared)
@@ -135,7 +137,12 @@ class _State:
             self.progress.over += 1
             return
         asked = job.approach if isinstance(job, Fork) else job
-        self.pending[executor.submit(perform, asked)] = job, _reached(asked.folder)
+        try:
+            future = executor.submit(perform, asked)
+        except RuntimeError as error:  # of which a broken executor's is one
+            rule = f"{type(executor).__name__} takes no more runs: {error}"
+            raise StoppedError(f"{rule}. {_AGAIN}") from None
+        self.pending[future] = job, reached(Path(asked.folder))
 
     def take(self, done: Iterable[Future], task: Callable[..., Task]) -> None:
         """Account for jobs that have ended; raises :class:`StoppedError` where none could go on."""
@@ -154,7 +161,7 @@ class _State:
             elif outcome.state == FINISHED and not _seen(job.folder):
                 stop = f"{job.run} is finished, says its worker, but is not in {job.folder}: do they share it?"
             else:
-                ends.append((job, _line(outcome, _reached(job.folder) > before)))
+                ends.append((job, _line(outcome, reached(Path(job.folder)) > before)))
                 if outcome.state == FINISHED and outcome.message:
                     self.say(f"{job.run}: {outcome.message}")
                 self.progress.made += outcome.made
@@ -169,7 +176,7 @@ class _State:
             if entry["state"] != FINISHED:
                 self.say(_said(entry, over))
         if stop is not None:
-            raise StoppedError(f"{stop}. What is finished is kept: mend that, and give the same command again")
+            raise StoppedError(f"{stop}. {_AGAIN}")
 
     def _branch(self, fork: Fork, outcome: Outcome, task: Callable[..., Task]) -> None:
         """Let the runs of an approach go on from it, or from their start where there is none."""
@@ -200,7 +207,7 @@ def _line(outcome: Outcome, further: bool) -> dict:
         return line(outcome.run, FINISHED, seconds=outcome.seconds)
     if outcome.state == LOST:
         return line(outcome.run, LOST, outcome.message, further=further)
-    if outcome.state == REFUSED:
+    if outcome.state in (REFUSED, DEADLY):
         return line(outcome.run, FAILED, outcome.message, final=True)
     return line(outcome.run, outcome.state, outcome.message)
 
@@ -225,14 +232,6 @@ def _seen(place: str) -> bool:
         if folder.is_dir():
             list(folder.iterdir())  # reading the folder makes the file system look again
     return True
-
-
-def _reached(place: str) -> float:
-    """When a run last left a checkpoint; 0 where there is none."""
-    try:
-        return (Path(place) / "checkpoint.h5").stat().st_mtime
-    except OSError:
-        return 0.0
 
 
 def counts(manifest: Manifest, runs: Iterable[Planned]) -> dict[str, int]:

@@ -38,7 +38,7 @@ class Fork:
 
 
 def forks(
-    runs: Iterable[Planned], folder: Path, program: str, threads: int | None
+    runs: Iterable[Planned], folder: Path, program: str, threads: int | None, driver: str = ""
 ) -> tuple[list[Fork], list[Planned]]:
     """Approaches that two or more of the runs share, and the runs that share none."""
     alone: list[Planned] = []
@@ -57,7 +57,7 @@ def forks(
         edge = max(map(_edge, group))
         name = "a" + hashlib.sha256(f"{key} {edge!r}".encode()).hexdigest()[:_DIGITS]
         case = group[0].case.model_copy(update={"name": name})
-        approach = Approach(name, case, edge, str(folder / APPROACHES / name), program, threads)
+        approach = Approach(name, case, edge, str(folder / APPROACHES / name), program, threads, driver)
         found.append(Fork(approach, group))
     return found, alone
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from restitution.campaigns.fork import APPROACHES
 from restitution.campaigns.manifest import FINISHED, RETRY, Manifest, line
 from restitution.campaigns.plan import RUNS, Planned
-from restitution.campaigns.run import CLAIM, seconds_of
+from restitution.campaigns.run import BEGUN, CLAIM, seconds_of
 from restitution.locks import is_held
 
-_NEEDED_ONCE = ("checkpoint.h5", "trajectory_so_far.csv", CLAIM)
+_NEEDED_ONCE = ("checkpoint.h5", "trajectory_so_far.csv", CLAIM, BEGUN)
 
 
 def under_way(folder: Path, runs: Iterable[Planned], manifest: Manifest) -> set[str]:
@@ -58,7 +58,7 @@ def clean(folder: Path, runs: Sequence[Planned], manifest: Manifest) -> tuple[di
             for path in (p for p in place.iterdir() if p.name in _NEEDED_ONCE or p.name.endswith(".part")):
                 removed += path.stat().st_size
                 path.unlink()
-                count["checkpoints and parts of files of runs that are over"] += path.name != CLAIM
+                count["checkpoints and parts of files of runs that are over"] += path.name not in (CLAIM, BEGUN)
     if all(manifest.of(r.run).over for r in runs) and (folder / APPROACHES).is_dir():
         for place in (folder / APPROACHES).iterdir():
             if not is_held(place / CLAIM):

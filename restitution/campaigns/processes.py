@@ -2,8 +2,10 @@
 
 The pool of the standard library is broken as a whole when one of its processes is killed, and does not say whose
 run that was. So each slot here is a pool of one process, started anew when that dies. Processes are spawned: a
-forked one would wait for threads that it has not inherited. They end with the process that started them, whatever
-kills it; a Ctrl-C at the terminal does not reach them, they are told to leave a checkpoint and stop.
+forked one would wait for threads that it has not inherited. Left to Python, a spawned one imports the script that
+asked for it once more, and one without ``if __name__ == "__main__"`` would begin all anew: here it does not, so
+tasks are functions of modules, not of the script. Processes end with the one that started them, whatever kills it;
+a Ctrl-C at the terminal does not reach them, they are told to leave a checkpoint and stop.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from multiprocessing import resource_tracker
+from types import ModuleType
 from typing import Any
 
 _SECONDS_TO_STOP = 30.0
@@ -43,7 +46,7 @@ class LocalProcesses(Executor):
         """In the slot with the least to do."""
         for futures in self._pending:
             futures[:] = [f for f in futures if not f.done()]
-        with _starting():
+        with _starting(), _without_script():
             return self._submit(_call, fn, *args, **kwargs)
 
     def _submit(self, fn: Callable, /, *args: Any, **kwargs: Any) -> Future:
@@ -101,6 +104,17 @@ def _starting() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _without_script() -> Iterator[None]:
+    """Within it, a process that is started is told of no script: its ``__main__`` stays empty."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 _within = threading.Event()

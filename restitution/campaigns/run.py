@@ -1,19 +1,24 @@
 """One run of a sweep: a plain function of a task that any executor can send anywhere the folder is.
 
 What is there already decides what is done: finished results are kept, a checkpoint is continued, a checkpoint that
-cannot be read is put aside for a start anew. One process at a time has the folder of a run.
+cannot be read is put aside for a start anew. One process at a time has the folder of a run. Beginnings that came
+to no end are counted there: an executor may start a run again by itself where its worker died, and one that kills
+each of them is to be given up, not the workers.
 """
 
 from __future__ import annotations
 
 import errno
+import json
 import os
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from restitution.campaigns.manifest import DIVERGED, FAILED, FINISHED
+from restitution.campaigns.manifest import ATTEMPTS, DIVERGED, FAILED, FINISHED
 from restitution.cases.case import Case
 from restitution.errors import DivergedError, InputError, StoppedError
 from restitution.locks import HeldError, sole_writer
@@ -22,8 +27,11 @@ from restitution.runs.validity.program import program_hash
 
 CLAIM = ".claimed"
 """File in a run's folder that the process has which is at it."""
-ELSEWHERE, STOP, REFUSED = "elsewhere", "stop", "refused"
-"""Outcomes beside the manifest's: another process is at it; no run could go on here; the case cannot be run."""
+BEGUN = ".begun"
+"""File in a run's folder while a process is at it: for which driver, how far it had come, beginnings since."""
+ELSEWHERE, STOP, REFUSED, DEADLY = "elsewhere", "stop", "refused", "deadly"
+"""Outcomes beside the manifest's: another process is at it; no run could go on here; the case cannot be run; each
+worker that was at it has died."""
 _NO_ROOM = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG))
 
 
@@ -40,6 +48,8 @@ class Task:
     threads: int | None = None
     fork: str | None = None
     """Checkpoint of an approach that the run may begin from."""
+    driver: str = ""
+    """Whose task it is: deaths under another driver are not counted, it may have been stopped with its workers."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +62,7 @@ class Approach:
     folder: str
     program: str
     threads: int | None = None
+    driver: str = ""
 
 
 @dataclass(frozen=True)
@@ -77,13 +88,17 @@ def perform(task: Task | Approach) -> Outcome:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with sole_writer(folder, CLAIM):
-            if isinstance(task, Approach):
-                return _approach(task, folder)
-            found = seconds_of(folder)
+            found = None if isinstance(task, Approach) else seconds_of(folder)
             if found is not None:
                 return Outcome(task.run, FINISHED, seconds=found, made=False)
-            remark = _make(task, folder)
-            _to_disk(folder)
+            with _counted(folder, task.driver) as deaths:
+                if deaths >= ATTEMPTS:
+                    rule = f"each worker that was at it died, {deaths} times without getting further: given up"
+                    return Outcome(task.run, DEADLY, rule)
+                if isinstance(task, Approach):
+                    return _approach(task, folder)
+                remark = _make(task, folder)
+                _to_disk(folder)
             return Outcome(task.run, FINISHED, remark, seconds=seconds_of(folder) or 0.0)
     except HeldError as error:
         return Outcome(task.run, ELSEWHERE, str(error))
@@ -94,6 +109,30 @@ def perform(task: Task | Approach) -> Outcome:
         if any(text in message for text in _NO_ROOM):
             return Outcome(task.run, STOP, message)
         return Outcome(task.run, REFUSED if isinstance(error, InputError) else FAILED, message)
+
+
+@contextmanager
+def _counted(folder: Path, driver: str) -> Iterator[int]:
+    """Deaths in a row within this run under this driver, without getting further; what follows may be one."""
+    path, now = folder / BEGUN, [driver, reached(folder)]
+    try:
+        whose, far, deaths = json.loads(path.read_text())
+    except (OSError, ValueError, TypeError):
+        whose, far, deaths = "", 0.0, 0
+    deaths = deaths if [whose, far] == now else 0
+    path.write_text(json.dumps([*now, deaths + 1]))
+    try:
+        yield deaths
+    finally:
+        path.unlink(missing_ok=True)
+
+
+def reached(folder: Path) -> float:
+    """When a run last left a checkpoint; 0 where there is none."""
+    try:
+        return (folder / "checkpoint.h5").stat().st_mtime
+    except OSError:
+        return 0.0
 
 
 def seconds_of(folder: Path) -> float | None:
@@ -161,7 +200,7 @@ def _predict(case: Case, folder: Path) -> None:
 
 def _to_disk(folder: Path) -> None:
     """What was written is on the disk, whatever happens to the machine: files, then their names."""
-    for place in (*(p for p in folder.iterdir() if p.is_file() and p.name != CLAIM), folder):
+    for place in (*(p for p in folder.iterdir() if p.is_file() and p.name not in (CLAIM, BEGUN)), folder):
         number = os.open(place, os.O_RDONLY)
         try:
             os.fsync(number)

@@ -74,7 +74,7 @@ def sweep(
         most = at_once or getattr(executor, "_max_workers", None) or _AT_ONCE
         given = Engine(executor, lambda: most, lambda: None, f"{type(executor).__name__}, {most} at a time")
         return _drive(given, runs, wanted, folder, None, share, show, say)
-    with _local(wanted, processes, threads) if scheduler is None else dask_engine(scheduler) as engine:
+    with _local(wanted, processes, threads) if scheduler is None else dask_engine(scheduler, say) as engine:
         return _drive(engine, runs, wanted, folder, threads, share, show, say)
 
 

@@ -1,12 +1,16 @@
 """A sweep on a real Dask scheduler with two workers, and what is left of it when each of them is killed."""
 
+import contextlib
 import json
+import os
 import signal
+import time
 
 import pytest
 
 from restitution.campaigns import cluster as own
 from restitution.campaigns.cluster import Renewal, keywords
+from restitution.campaigns.manifest import ATTEMPTS
 from tests import sweeps
 
 pytest.importorskip("distributed")
@@ -15,8 +19,9 @@ LONG = 0.12
 
 
 @pytest.fixture
-def cluster(tmp_path):
-    """A scheduler and two workers on this machine: the address, and the processes."""
+def cluster(tmp_path, request):
+    """A scheduler and two workers on this machine: the address, and the processes; with nannies if asked for."""
+    nanny = getattr(request, "param", "--no-nanny")
     file = tmp_path / "scheduler.json"
     quiet = ("--no-dashboard", "--scheduler-file", file)
     scheduler = sweeps.module("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", 0, *quiet)
@@ -24,7 +29,7 @@ def cluster(tmp_path):
     address = json.loads(file.read_text())["address"]
     workers = [
         sweeps.module(
-            "distributed.cli.dask_worker", address, "--nthreads", 1, "--no-nanny", "--no-dashboard",
+            "distributed.cli.dask_worker", address, "--nthreads", 1, nanny, "--no-dashboard",
             "--local-directory", tmp_path / f"worker{i}",
         )
         for i in range(2)
@@ -81,6 +86,32 @@ def test_a_killed_driver_is_followed_by_another(cluster, by_processes, tmp_path)
     assert sweeps.run(file, "--out", out, "--scheduler", address).returncode == 0
     assert sorted(sweeps.finished(out).values()) == [1] * 6
     assert sweeps.results(out) == by_processes
+
+
+@pytest.mark.parametrize("cluster", ["--nanny"], indirect=True)
+def test_a_run_that_kills_each_worker_is_given_up_alone(cluster, by_processes, tmp_path):
+    """Workers come back, their nannies see to it; Dask starts the run on them again by itself."""
+    address, *_ = cluster
+    out, file = tmp_path / "out", sweeps.tiny(tmp_path, LONG)
+    deadly, killed = sorted(by_processes)[2], set()
+    claim = out / "runs" / deadly / ".claimed"
+    with sweeps.start(file, "--out", out, "--scheduler", address, "--no-forks") as driver:
+        while driver.poll() is None:
+            with contextlib.suppress(OSError, IndexError, ValueError):
+                pid = int(claim.read_text().split()[1])
+                if pid not in killed:
+                    os.kill(pid, signal.SIGKILL)
+                    killed.add(pid)
+            time.sleep(0.02)
+        _, said = driver.communicate(timeout=120)
+    assert driver.returncode == 2
+    assert len(killed) == ATTEMPTS
+    assert [line for line in said.splitlines() if deadly in line and "given up" in line]
+    assert "Traceback" not in said
+    assert {run for run, times in sweeps.finished(out).items() if times == 1} == set(by_processes) - {deadly}
+    assert {run: files for run, files in sweeps.results(out).items() if run != deadly} == {
+        run: files for run, files in by_processes.items() if run != deadly
+    }
 
 
 def test_no_scheduler_and_a_keyword_that_is_none_are_one_line_each(tmp_path):

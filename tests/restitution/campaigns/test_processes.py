@@ -42,3 +42,27 @@ def test_an_interrupt_while_processes_start_ends_them_silently(tmp_path, seconds
     out, said = driver.communicate(timeout=50)
     assert out == "stopped\n"
     assert said == ""
+
+
+UNGUARDED = """
+import os
+from restitution.campaigns.processes import LocalProcesses
+
+print("begins", flush=True)
+processes = LocalProcesses(2)
+others = {processes.submit(os.getpid).result() for _ in range(2)}
+print(len(others - {os.getpid()}), flush=True)
+processes.shutdown()
+"""
+
+
+def test_a_script_without_a_guard_is_not_begun_again_by_its_processes(tmp_path):
+    script = tmp_path / "submits.py"
+    script.write_text(UNGUARDED)
+    done = subprocess.run(
+        [sys.executable, str(script)], env=os.environ | {"PYTHONPATH": str(ROOT)}, text=True,
+        capture_output=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() in (["begins", "1"], ["begins", "2"])
+    assert done.stderr == ""

@@ -5,6 +5,8 @@ import os
 import signal
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,7 @@ from restitution.calibration import read
 from restitution.campaigns.design import Sweep
 from restitution.campaigns.manifest import ATTEMPTS, DIVERGED, FAILED, FINISHED, LOST, RETRY, Manifest, line
 from restitution.campaigns.plan import planned
-from restitution.campaigns.run import ELSEWHERE, STOP, Task, perform
+from restitution.campaigns.run import BEGUN, DEADLY, ELSEWHERE, STOP, Task, perform
 from restitution.campaigns.sweep import sweep
 from restitution.campaigns.table import impacts_of, runs_of
 from restitution.cli import main
@@ -254,6 +256,41 @@ def test_a_run_that_another_process_has_is_left_to_it(tmp_path):
     with sole_writer(Path(task.folder), ".claimed"):
         assert perform(task).state == ELSEWHERE
     assert perform(Task(task.run, task.model, task.case, task.folder, "other")).state == STOP
+
+
+def test_a_run_that_kills_each_worker_is_given_up_and_begins_afresh_under_another_driver(tmp_path):
+    """As an executor does that starts a run again by itself: what is left of a killed process is its folder."""
+    task = one_task(tmp_path, driver="one")
+    folder = Path(task.folder)
+    for _ in range(ATTEMPTS):
+        killed = os.fork()
+        if not killed:
+            with patched_to_die():
+                perform(task)
+        os.waitpid(killed, 0)
+        assert (folder / BEGUN).exists()
+    assert perform(task).state == DEADLY
+    assert not (folder / BEGUN).exists()
+    (folder / BEGUN).write_text(json.dumps(["one", 0.0, ATTEMPTS]))
+    assert perform(replace(task, driver="another")).state == FINISHED
+    assert not (folder / BEGUN).exists()
+
+
+@contextmanager
+def patched_to_die():
+    from restitution.runs import simulate
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(simulate, "simulate", lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL))
+        yield
+
+
+def test_an_executor_that_takes_no_more_stops_the_sweep(tmp_path):
+    executor = ThreadPoolExecutor(1)
+    executor.shutdown()
+    with pytest.raises(StoppedError, match="takes no more runs"):
+        sweep(sweeps.write(tmp_path, sweeps.POINTS), tmp_path / "out", executor=executor)
+    assert sweeps.lines(tmp_path / "out") == []
 
 
 def test_a_full_disk_stops_the_sweep_and_blames_no_run(tmp_path, monkeypatch):
