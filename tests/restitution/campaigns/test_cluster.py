@@ -94,7 +94,7 @@ def test_a_run_that_kills_each_worker_is_given_up_alone(cluster, by_processes, t
     address, *_ = cluster
     out, file = tmp_path / "out", sweeps.tiny(tmp_path, LONG)
     deadly, killed = sorted(by_processes)[2], set()
-    claim = out / "runs" / deadly / ".claimed"
+    claim = out / "runs" / deadly / ".running"
     with sweeps.start(file, "--out", out, "--scheduler", address, "--no-forks") as driver:
         while driver.poll() is None:
             with contextlib.suppress(OSError, IndexError, ValueError):
