@@ -6,6 +6,7 @@ One record serves measured data (``data/datapackage.json``), users' TOML files a
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -116,18 +117,46 @@ _RULES = {
     "extra_forbidden": "is not a known key",
     "model_type": "must be a table of keys, as in [fluid]",
     "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "string_type": "must be a text",
+    "bool_type": "must be true or false",
+    "list_type": "must be a list",
+    "tuple_type": "must be a list",
+    "finite_number": "must be a finite number",
+    "greater_than_equal": "must be {ge} or above",
+    "greater_than": "must be above {gt}",
+    "less_than_equal": "must be {le} or below",
+    "less_than": "must be below {lt}",
+    "literal_error": "must be {expected}",
 }
+_IN_UNION = re.compile(r"\[|^(?:constrained-\w+|int|float|str|bool|tuple|dict|list)$")
+"""What names no key of a file but the member of a union that was tried."""
 
 
 def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
     """Pydantic's findings as defects that name field and value."""
-    found = []
+    found: dict[tuple[str, ...], dict[str | None, list[str]]] = {}
     for e in error.errors():
         missing = e["type"] == "missing"
         value = None if missing or isinstance(e["input"], dict | list) else _text(e["input"])
-        rule = _RULES.get(e["type"], e["msg"].removeprefix("Value error, "))
-        found.append(Defect(rule, file=file, field=".".join(str(p) for p in e["loc"]), value=value))
-    return found
+        known, limits = _RULES.get(e["type"]), _plain(e.get("ctx", {}))
+        rule = e["msg"].removeprefix("Value error, ") if known is None else known.format(**limits)
+        if isinstance(e["input"], float) and not math.isfinite(e["input"]):
+            rule = _RULES["finite_number"]
+        own = e["loc"][-1:] if e["type"] in ("missing", "extra_forbidden") else ()
+        keys = [p for p in e["loc"][: len(e["loc"]) - len(own)] if isinstance(p, int) or not _IN_UNION.search(p)]
+        found.setdefault(tuple(map(str, (*keys, *own))), {}).setdefault(value, []).append(rule)
+    return [
+        Defect(", or ".join(dict.fromkeys(rules)), file=file, field=".".join(keys), value=value)
+        for keys, values in found.items()
+        for value, rules in values.items()
+        if value is not None or not any(keys == other[: len(keys)] != other for other in found)
+    ]
+
+
+def _plain(limits: dict[str, Any]) -> dict[str, Any]:
+    return {name: f"{x:g}" if isinstance(x, float) else x for name, x in limits.items()}
 
 
 def _text(value: Any) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import json
 import math
+import re
 import stat
 import tomllib
 from collections.abc import Iterator
@@ -26,6 +27,9 @@ LONGEST_TOML_LINE = 2000
 MOST_DIGITS = 300
 """Of a whole number, so that it is one of floating point as well."""
 _CHUNK = 2**20
+_AT_LINE = re.compile(r"at line (\d+)")
+_MOST_SHOWN = 80
+"""Characters of a line in a message."""
 
 
 def read_bytes(path: str | Path, most: int = MOST_TABLE) -> bytes:
@@ -33,6 +37,8 @@ def read_bytes(path: str | Path, most: int = MOST_TABLE) -> bytes:
 
     A pipe can be emptied once only, so what came out of one is kept for those that ask again.
     """
+    if not str(path):
+        raise InputError("a file's name is empty")
     try:
         about = Path(path).stat()
         if stat.S_ISFIFO(about.st_mode):
@@ -104,13 +110,22 @@ def read_toml(path: str | Path) -> dict[str, Any]:
             rule = f"is a line of {len(line)} bytes; at most {LONGEST_TOML_LINE} are read"
             raise InputError(Defect(rule, file=file, row=row))
     try:
-        return tomllib.loads(content.decode("utf-8-sig").replace("\r\n", "\n"))
+        text = content.decode("utf-8-sig").replace("\r\n", "\n")
+        return tomllib.loads(text)
     except UnicodeDecodeError as error:
         raise InputError(Defect(f"is not UTF-8 text: {error.reason} at byte {error.start}", file=file)) from None
     except RecursionError:
         raise InputError(Defect("is not TOML that is read here: nested too deep", file=file)) from None
     except ValueError as error:  # of which tomllib's own is one
-        raise InputError(Defect(f"is not TOML: {error}", file=file)) from None
+        raise InputError(Defect(f"is not TOML: {error}{_shown(text, str(error))}", file=file)) from None
+
+
+def _shown(text: str, error: str) -> str:
+    """The line of a TOML file that an error of its parser is about, and what the parser means by it."""
+    at, lines = _AT_LINE.search(error), text.rstrip().split("\n")
+    line = lines[min(int(at[1]), len(lines)) - 1 if at else -1].strip()
+    twice = ", a key that stands twice" if error.startswith("Cannot ") else ""
+    return f": {line[:_MOST_SHOWN]}{twice}" if line else ""
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

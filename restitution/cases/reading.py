@@ -87,6 +87,8 @@ def case_of(content: dict[str, Any], file: str, runnable: bool = True) -> Case:
 def find(given: str | Path) -> Path:
     """The file of a case: as given, or the shipped one of that name."""
     path = Path(given)
+    if not str(given).strip():
+        raise InputError("name a case: a TOML file or a shipped one ('restitution cases list')")
     if _is(path.is_file):
         return path
     known = names()

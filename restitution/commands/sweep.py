@@ -127,7 +127,7 @@ def run(args: argparse.Namespace) -> int | None:
 
 
 def _make(args: argparse.Namespace) -> int | None:
-    if not args.list and not args.dry_run:
+    if not args.list and not args.dry_run and Path(args.what).is_file():
         _say(f"{args.what}: planning its runs")  # before what is slow to load
     from restitution.campaigns.design import Sweep
     from restitution.campaigns.plan import planned, read_plan

@@ -134,3 +134,20 @@ def test_a_number_is_what_it_was_written_as(value):
 def test_one_parser_says_what_a_number_is(text):
     with pytest.raises(UnitError):
         number(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [("a = 1\nb == 2\nc = 3\n", "b == 2"), ("a = 1\n[part\n", "[part"), ("a = 1\na = 2\nb = 3\n", "a = 2")],
+)
+def test_the_line_that_is_not_toml_is_shown(tmp_path, text, line):
+    path = tmp_path / "a.toml"
+    path.write_text(text)
+    with pytest.raises(InputError) as found:
+        read_toml(path)
+    assert f": {line}" in str(found.value)
+
+
+def test_a_name_that_is_empty_is_not_the_folder_one_is_in():
+    with pytest.raises(InputError, match="name is empty"):
+        read_bytes("")
