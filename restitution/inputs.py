@@ -6,13 +6,18 @@ nesting ends. Whatever is wrong is one :class:`~restitution.errors.Defect` that 
 
 from __future__ import annotations
 
+import bz2
 import gc
+import gzip
+import io
 import json
+import lzma
 import math
 import re
 import stat
 import tomllib
-from collections.abc import Iterator
+import zlib
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -30,6 +35,9 @@ _CHUNK = 2**20
 _AT_LINE = re.compile(r"at line (\d+)")
 _MOST_SHOWN = 80
 """Characters of a line in a message."""
+_PACKED: dict[bytes, Callable[[io.BytesIO], Any]] = {
+    b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zXZ\x00": lzma.open,
+}  # fmt: skip
 
 
 def read_bytes(path: str | Path, most: int = MOST_TABLE) -> bytes:
@@ -71,7 +79,24 @@ def _read(path: str | Path, most: int) -> bytes:
     if size > most:
         rule = f"is larger than {_size(most)}, the most that is read of such a file"
         raise InputError(Defect(rule, file=str(path)))
-    return b"".join(parts)
+    return _unpacked(b"".join(parts), most, str(path))
+
+
+def _unpacked(data: bytes, most: int, file: str) -> bytes:
+    """What is packed in gzip, bzip2 or xz, as solvers keep long tables, within the same bound; else the data."""
+    opener = next((opener for mark, opener in _PACKED.items() if data.startswith(mark)), None)
+    if opener is None:
+        return data
+    try:
+        with opener(io.BytesIO(data)) as stream:
+            content = stream.read(most + 1)
+    except (OSError, EOFError, lzma.LZMAError, zlib.error):
+        raise InputError(Defect("is packed, and cannot be unpacked: is it whole?", file=file)) from None
+    if len(content) > most:
+        raise InputError(
+            Defect(f"is larger than {_size(most)} unpacked, the most that is read of such a file", file=file)
+        )
+    return content
 
 
 @contextmanager
@@ -91,15 +116,19 @@ def lists_only() -> Iterator[None]:
 
 def read_json(path: str | Path) -> Any:
     """What a JSON file says; raises :class:`InputError` where it is none, or says anything twice."""
-    content = read_bytes(path, MOST_JSON)
+    return json_of(read_bytes(path, MOST_JSON), str(path))
+
+
+def json_of(content: bytes, file: str) -> Any:
+    """What the bytes of a JSON file say; raises :class:`InputError` as :func:`read_json` does."""
     try:
         return json.loads(
             content, parse_int=_integer, parse_float=_number, parse_constant=_number, object_pairs_hook=_once
         )
     except RecursionError:
-        raise InputError(Defect("is not JSON that is read here: nested too deep", file=str(path))) from None
+        raise InputError(Defect("is not JSON that is read here: nested too deep", file=file)) from None
     except ValueError as error:
-        raise InputError(Defect(f"is not JSON: {error}", file=str(path))) from None
+        raise InputError(Defect(f"is not JSON: {error}", file=file)) from None
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:

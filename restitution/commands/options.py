@@ -42,7 +42,8 @@ def add_track(parser: argparse.ArgumentParser, several: bool = False) -> None:
         group.add_argument("--settings", metavar="FILE", help="all of this in a TOML file; options go before it")
     group.add_argument("--unit", metavar="U", help="of positions: m, mm, px, 0.3mm, d; of velocities also mm/s")
     group.add_argument("--time-unit", metavar="U", help="s, ms, frame, 0.5ms, sqrt(d/g)")
-    group.add_argument("--fps", type=number, metavar="N", help="frames a second, of the camera")
+    fps = "frames a second, of the camera; times at the pace of a player (24 to 60 a second) are then frames"
+    group.add_argument("--fps", type=number, metavar="N", help=fps)
     group.add_argument("--pixel", metavar="LENGTH", help="length of a pixel, as in 0.125mm")
     group.add_argument(
         "--direction", choices=("up", "down"), help="whether values grow away from the wall (up) or towards it"

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
 import numpy as np
 
 from restitution.errors import Defect, InputError
+from restitution.foreign import player
+from restitution.foreign.completed import unit_in_file
 from restitution.foreign.heading import FRAMES
 from restitution.foreign.number_text import as_number
 from restitution.foreign.programs import POSITIONS, TIMES, VELOCITIES
@@ -18,6 +21,8 @@ _SAME_CLOCK = 0.02
 """Part by which frames a second may differ from the rows a second of a file that has times of its own."""
 _FROM_A_DETECTOR = ("position", "distance")
 """Words in the names of columns that detectors of motion write."""
+_ALONG = re.compile(r"(?<![a-z])[yz](?![a-z])(?!.*(?:vel|speed|acc))|\[3\]|points:[12]$", re.IGNORECASE)
+"""Names of columns that say y or z somewhere: "P1 Y", "Point1-Y[mm]", "y_position", "c_com[3]", "Points:2"."""
 _MOST_NAMED = 30
 """Columns that a message names."""
 _SWAPPED = 0.1
@@ -47,13 +52,20 @@ def what_is_needed(table: ForeignTable, given: Settings | None = None) -> Defect
         name, other = ("velocity_m_s", "gap_m") if speed else ("gap_m", "velocity_m_s")
         asked.append(f"--column {name}={_quoted(value or 'NAME')} (or {other}=NAME)")
     also = []
+    clock = unit_in_file(table, time) if time else None
     if time is None and table.named and len(table.header) != 2:
         also.append(f"--column time_s={ROW} --time-unit frame --fps N where each row is a frame")
-    elif given.time_unit is None and not table.units.get(time or ""):
-        frames = time is not None and any(word in time.lower() for word in _FRAMES)
+    elif given.time_unit is None and clock in (None, "frame"):
+        frames = clock is not None or (time is not None and any(word in time.lower() for word in _FRAMES))
         fps = "" if given.frames_per_second else " --fps N"
         also.append(f"--time-unit frame{fps}" if frames else "--time-unit s or what it is in")
-    if given.unit is None and not table.units.get(value or ""):
+    elif (
+        given.frames_per_second is None
+        and time is not None
+        and (played := player.clock(table, time, clock)) is not None
+    ):
+        also.append(player.asked(time, played[0]))
+    if given.unit is None and not (value and unit_in_file(table, value)):
         # Only a position has a point and may be in pixels.
         image = " (rows of an image: --unit px --pixel LENGTH --wall ROW --direction down)"
         also.append("--unit m/s or what it is in" if speed else f"--unit m or what it is in{image}")
@@ -85,15 +97,25 @@ def check_order(table: ForeignTable, time: str, value: str) -> None:
 
 def _guessed(table: ForeignTable) -> tuple[str | None, str | None]:
     """Which columns may be time and position: by their usual names, or the only two that there are."""
-    time = next((own for name in TIMES if (own := table.column(name))), None)
-    time = time or next((own for own in table.header if own.lower().startswith(("time ", "time("))), None)
+    time = table.column(table.program.time) if table.program is not None and table.program.time else None
+    time = time or next((own for name in TIMES if (own := table.column(name))), None)
+    time = time or next((own for own in table.header if "time" in own.lower() and _moves(table, own)), None)
+    time = time or next(
+        (own for own in table.header if own.lower().startswith(_FRAMES) and _moves(table, own)), None
+    )
     value = next(
         (own for name in POSITIONS if (own := table.column(name)) and own != time and _moves(table, own)), None
     )
     if value is None:  # "Position (m) Run #1"
         starts = tuple(f"{name} " for name in POSITIONS if len(name) > 3)
         value = next((own for own in table.header if own.lower().startswith(starts) and _moves(table, own)), None)
-    value = value or next((own for name in VELOCITIES if (own := table.column(name)) and own != time), None)
+    value = value or next(
+        (own for own in table.header if _ALONG.search(own) and own != time and _moves(table, own)), None
+    )
+    value = value or next(
+        (own for name in VELOCITIES if (own := table.column(name)) and own != time and _has_signs(table, own)),
+        None,
+    )
     if len(table.header) == 2:
         time = time or next(name for name in table.header if name != value)
         value = value or next(name for name in table.header if name != time)
@@ -112,6 +134,13 @@ def _is_speed(unit: str | None) -> bool:
         return unit is not None and quantity(unit).dimension == SPEED
     except UnitError:
         return False
+
+
+def _has_signs(table: ForeignTable, name: str) -> bool:
+    """Whether a column has values of both signs, as a velocity has and its magnitude has not."""
+    k = table.header.index(name)
+    values = [as_number(cells[k]) for _, cells in table.rows if len(cells) == len(table.header)]
+    return any(value < 0 for value in values) and any(value > 0 for value in values)
 
 
 def _moves(table: ForeignTable, name: str) -> bool:

@@ -20,7 +20,6 @@ _BINARY = {
     b"PK\x03\x04": "is a spreadsheet or an archive, no text; save the table as CSV",
     b"\xd0\xcf\x11\xe0": "is an old spreadsheet, no text; save the table as CSV",
     b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.formats.hdf5`
-    b"\x1f\x8b": "is compressed; unpack it first",
     b"\x93NUMPY": "is an array of NumPy, no text; save it with numpy.savetxt",
     b"MATLAB 5.0": "is a workspace of MATLAB, no text; save the table with writematrix",
 }
@@ -57,8 +56,7 @@ def read_lines(path: str | Path) -> list[str]:
 def lines_of(text: str, file: str) -> list[str]:
     """The lines of a text; raises :class:`InputError` for markup, which is no table, and for lines too wide."""
     if kind := _MARKUP.get(text.lstrip()[:1]):
-        digitised = "; of a project of WebPlotDigitizer only fit and compare take impacts" * (kind == "JSON")
-        raise InputError(Defect(f"is {kind}, no table; export the table as CSV{digitised}", file=file))
+        raise InputError(Defect(f"is {kind}, no table; export the table as CSV", file=file))
     lines = text.split("\n")
     check_widths(lines, file)
     return lines
@@ -95,10 +93,12 @@ def _code_page(data: bytes) -> str:
     Where none is, that of western Europe, unless whole words are beyond ASCII.
     """
     beyond = b"\n".join(line for line in data.splitlines() if _BEYOND.search(line))[:_SAMPLE]
-    pages = (WESTERN, *_OTHER_SCRIPTS)
-    known = [_known_words(beyond.decode(page, errors="replace")) for page in pages]
-    if known.count(max(known)) == 1:
-        return pages[known.index(max(known))]
+    pages = (WESTERN, *_OTHER_LATIN, *_OTHER_SCRIPTS)
+    texts = [beyond.decode(page, errors="replace") for page in pages]
+    known = [_known_words(text) for text in texts]
+    likely = [(page, text) for page, text, n in zip(pages, texts, known, strict=True) if n == max(known) > 0]
+    if len({text for _, text in likely}) == 1:
+        return likely[0][0]
     in_words = sum(map(len, _WORDS.findall(beyond)))
     if 2 * in_words < len(_BEYOND.findall(beyond)):
         return WESTERN

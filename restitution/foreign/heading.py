@@ -65,6 +65,8 @@ def heading_of(layout: Layout) -> Heading:
         if layout.vectors:
             cells = next(iter(_vector_names(layout.lines[line - 1], layout)), cells)
         placed = _placed(cells, width, filled)
+        if placed is None and layout.separator == " ":
+            placed = _of_words(layout.lines[line - 1], width)
         if placed is None or not are_words(placed):
             continue
         if are_units(placed) and at > 0 and not units:
@@ -75,6 +77,8 @@ def heading_of(layout: Layout) -> Heading:
         heading.line, heading.names = line, _with_tracks(placed, [cells for _, cells in above[:known]])
         if not units:  # rows below the names that are no data are for the strict reader to name
             heading.first_row = at + 1
+            while heading.first_row < first and _is_title(layout.rows[heading.first_row].cells, width):
+                heading.first_row += 1
         break
     else:
         units = _from_comments(heading, layout, width, filled, data[0].line if data else len(layout.lines) + 1)
@@ -142,6 +146,25 @@ def _placed(cells: list[str], width: int, filled: list[int]) -> dict[int, str] |
     return dict(enumerate(named)) if enough else None
 
 
+def _of_words(text: str, width: int) -> dict[int, str] | None:
+    """Names of several words above columns that spaces separate: each ends with two spaces, a tab, or its unit."""
+    apart = re.split(r"\s{2,}|\t", text.strip())
+    if len(apart) != width:
+        apart, name = [], []
+        for word in text.split():
+            name.append(word)
+            if unit_in(" ".join(name)) is not None:
+                apart.append(" ".join(name))
+                name = []
+        apart += [" ".join(name)] if name else []
+    return dict(enumerate(apart)) if len(apart) == width > 1 else None
+
+
+def _is_title(cells: list[str], width: int) -> bool:
+    """Whether a line below the names is a title of what follows: one cell where there are several columns."""
+    return len(cells) == 1 < width - 1 and not is_number(cells[0]) and not is_lost(cells[0])
+
+
 def are_words(placed: dict[int, str]) -> bool:
     """Whether most cells of a line are no numbers."""
     texts = [text for text in placed.values() if text]
@@ -197,9 +220,12 @@ def cuts(text: str, layout: Layout) -> list[list[str]]:
     if layout.vectors:
         return _vector_names(text, layout)
     together = re.sub(r"\s+([(\[])", r"\1", text)
+    wide = [re.split(r"\s{2,}", text.strip())] if layout.separator == " " else []  # names of several words
     ways = [layout.separator, *(s for s in SEPARATORS if s != layout.separator)]
     cuts = [split(line, separator) for separator in ways for line in (text, together)]
-    return [cells for cells in cuts if len(cells) > 1 and not cells[0].endswith((",", ";"))]
+    return [
+        cells for cells in (*cuts[:2], *wide, *cuts[2:]) if len(cells) > 1 and not cells[0].endswith((",", ";"))
+    ]
 
 
 def _vector_names(text: str, layout: Layout) -> list[list[str]]:

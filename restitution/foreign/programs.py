@@ -73,8 +73,9 @@ KINOVEA = Program(
     time="time", position="y", units={"time": "ms"},
 )  # fmt: skip
 KINOVEA_TEXT = Program(
-    "Kinovea", lambda names: False, time="t", position="y", particle="trajectory", units={"t": "s"}
+    "Kinovea", lambda names: False, time="t", position="y", particle="trajectory", either_way=True
 )  # fmt: skip
+"""Its axis points up or, where it was not calibrated, down; its times are in the unit that its user chose."""
 TRACKER = Program(
     "Tracker",
     lambda names: "t" in names and {"x", "y"} <= {name.rpartition("/")[2] for name in names},
@@ -134,6 +135,18 @@ VERNIER_TEXT = Program("Logger Pro", lambda names: False, time="t", position="y"
 LAMMPS = Program("LAMMPS", lambda names: False, time="timestep", particle="id", centre=True)
 LAMMPS_LOG = Program("LAMMPS", lambda names: False, time="time", centre=True)
 OPENFOAM = Program("OpenFOAM", lambda names: False, time="time", units={"time": "s"})
+TECPLOT = Program("Tecplot", lambda names: False, time="solutiontime", units={"solutiontime": "s"})
+FLUENT = Program("Fluent", lambda names: False, particle="curve")
+LABVIEW = Program("LabVIEW", lambda names: False, time="x_value")
+OPENPTV = Program(
+    "OpenPTV", lambda names: False, time="frame", particle="trajectory", centre=True,
+    units={"frame": "frame", "x": "mm", "y": "mm", "z": "mm"},
+)  # fmt: skip
+ICY = Program(
+    "Icy", lambda names: False, time="t", position="y", particle="track", down=True, centre=True,
+    units={"t": "frame", "x": "px", "y": "px", "z": "px"},
+)  # fmt: skip
+WEBPLOTDIGITIZER = Program("WebPlotDigitizer", lambda names: False, time="x", position="y")
 _BY_NAMES = (
     TRACKMATE, TRACKPY, DEEPLABCUT, KINOVEA, IMAGEJ_MASS, IMAGEJ, MANUAL_TRACKING, MTRACKJ_POINTS, SLEAP, DLTDV,
     IDTRACKER, VERNIER,

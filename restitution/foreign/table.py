@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from itertools import groupby
 from pathlib import Path
 
 from restitution.errors import Defect, InputError
 from restitution.foreign import programs
 from restitution.foreign.file_text import lines_of, mistaken, text_of
-from restitution.foreign.formats import blocks, hdf5, markup, stopwatch
+from restitution.foreign.formats import blocks, digitised, hdf5, markup, openptv, stopwatch, zones
 from restitution.foreign.formats.spots import Spots
-from restitution.foreign.heading import Heading, data_rows, heading_of, without_unit
+from restitution.foreign.heading import Heading, data_rows, heading_of, unit_in, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain, seconds
 from restitution.foreign.programs import Program
@@ -25,6 +24,19 @@ ROW = "row"
 """A column that every table has, unless the file has its own: which row of data it is, from 0."""
 _MOST_NAMED = 20
 """Particles that a message names."""
+
+
+_BLOCKS: tuple[tuple[Callable[[list[str]], bool], Callable[[list[str], str], blocks.Read], Program], ...] = (
+    (blocks.is_lammps, blocks.lammps, programs.LAMMPS),
+    (blocks.is_kinovea, blocks.kinovea, programs.KINOVEA_TEXT),
+    (blocks.is_mtrackj, blocks.mtrackj, programs.MTRACKJ),
+    (blocks.is_lammps_log, blocks.lammps_log, programs.LAMMPS_LOG),
+    (blocks.is_openfoam_log, blocks.openfoam_log, programs.OPENFOAM),
+    (zones.is_tecplot, zones.tecplot, programs.TECPLOT),
+    (zones.is_fluent, zones.fluent, programs.FLUENT),
+    (zones.is_labview, zones.labview, programs.LABVIEW),
+)
+"""How a text of many small tables is known, what it holds, whose it is."""
 
 
 @dataclass
@@ -159,22 +171,21 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
     InputError : where it is no such table, or what its numbers are is not clear, with the row and what would help.
     """
     file = str(path)
+    if openptv.is_frame(path):
+        return _of_blocks(file, openptv.trajectories(path), programs.OPENPTV)
     if (data := read_bytes(path)).startswith(hdf5.MAGIC):
         return _of_spots(file, hdf5.spots(data, file))
+    if digitised.is_archive(data):
+        return _of_curves(path)
     text = text_of(data, file)
+    if text.lstrip().startswith("{") and '"calibration' in text:
+        return _of_curves(path)
     if markup.is_markup(text):
         return _of_spots(file, markup.spots(text, file))
     lines = lines_of(text, file)
-    if blocks.is_lammps(lines):
-        return _of_blocks(file, *blocks.lammps(lines, file), programs.LAMMPS)
-    if blocks.is_kinovea(lines):
-        return _of_blocks(file, *blocks.kinovea(lines), programs.KINOVEA_TEXT)
-    if blocks.is_mtrackj(lines):
-        return _of_blocks(file, *blocks.mtrackj(lines, file), programs.MTRACKJ)
-    if blocks.is_lammps_log(lines):
-        return _of_blocks(file, *blocks.lammps_log(lines, file), programs.LAMMPS_LOG)
-    if blocks.is_openfoam_log(lines):
-        return _of_blocks(file, *blocks.openfoam_log(lines), programs.OPENFOAM)
+    for known, read, program in _BLOCKS:
+        if known(lines):
+            return _of_blocks(file, read(lines, file), program)
     layout = layout_of(lines, file, decimal)
     parts = sections(layout)
     if len(parts) < 2:
@@ -231,14 +242,33 @@ def _of_spots(file: str, found: Spots) -> ForeignTable:
     return ForeignTable(file, found.names, rows, found.units, found.program, form=form)
 
 
-def _of_blocks(file: str, names: list[str], rows: list[Row], program: Program) -> ForeignTable:
+def _of_curves(path: str | Path) -> ForeignTable:
+    """The curves of a digitised plot, each by x, for clicks come in any order."""
+
+    def table(curve: digitised.Curve) -> ForeignTable:
+        pairs = sorted(zip(curve.x.tolist(), curve.y.tolist(), strict=True))
+        rows = [(n, [repr(x), repr(y)]) for n, (x, y) in enumerate(pairs, 1)]
+        program = programs.WEBPLOTDIGITIZER
+        return ForeignTable(str(path), ["x", "y"], rows, program=program, form=program.name)
+
+    curves = {curve.name: curve for curve in digitised.curves(path) if len(curve.x)}
+    tables = {name: partial(table, curve) for name, curve in curves.items()}
+    first = next(iter(tables.values()))()
+    if len(tables) == 1:
+        return first
+    return replace(first, sections=dict(tables), section_rows={name: len(c.x) for name, c in curves.items()})
+
+
+def _of_blocks(file: str, read: blocks.Read, program: Program) -> ForeignTable:
+    names, rows, units = read
     decimal = decimal_of(cell for row in rows for cell in row.cells[1:])[0] or "."
     cut = [row for row in rows if len(row.cells) != len(names)]
     if cut:
         rule = f"has {len(cut[0].cells)} values where {len(names)} are named"
         raise InputError(Defect(rule, file=file, row=cut[0].line))
     plain_rows = [(row.line, [plain(cell, decimal) for cell in row.cells]) for row in rows]
-    return ForeignTable(file, names, plain_rows, program=program, form=program.name)
+    units = {name: unit for name in names if (unit := unit_in(name))} | units
+    return ForeignTable(file, names, plain_rows, units, program, form=program.name)
 
 
 def _rows(rows: list[Row], columns: list[int], layout: Layout, file: str) -> list[tuple[int, list[str]]]:
@@ -251,6 +281,8 @@ def _rows(rows: list[Row], columns: list[int], layout: Layout, file: str) -> lis
     for line, cells in rows[:end]:
         if len(cells) > layout.width and not any(cells[layout.width :]):
             cells = cells[: layout.width]
+        if len(cells) < layout.width and all(map(is_lost, cells)):
+            cells = [""] * layout.width  # a frame in which nothing was found
         if len(cells) == layout.width and not every:
             cells = [cells[i] for i in columns]
         result.append((line, cells))
@@ -276,23 +308,3 @@ def _bare(cell: str) -> str:
     """A particle's name: 3.0 is 3."""
     text = cell.strip()
     return text.removesuffix(".0") if text.removesuffix(".0").isdigit() else text
-
-
-def lost_rows(table: ForeignTable, names: list[str]) -> list[int]:
-    """Which rows have no value in one of the columns."""
-    width, found = len(table.header), set[int]()
-    for i in map(table.header.index, names):
-        cells = [row[i] if len(row) == width else "0" for _, row in table.rows]
-        lost = {cell for cell in set(cells) if is_lost(cell)}
-        found |= {k for k, cell in enumerate(cells) if cell in lost} if lost else set()
-    return sorted(found)
-
-
-def in_words(lines: list[int]) -> str:
-    """Numbers of lines as ranges: "rows 62 to 71, 122"."""
-    parts = []
-    for _, run in groupby(enumerate(lines), key=lambda pair: pair[1] - pair[0]):
-        run_lines = [line for _, line in run]
-        parts.append(f"{run_lines[0]}" + (f" to {run_lines[-1]}" if len(run_lines) > 1 else ""))
-    shown = ", ".join(parts[:5]) + (f" and {len(parts) - 5} more places" if len(parts) > 5 else "")
-    return f"row{'s' if len(lines) > 1 else ''} {shown}"

@@ -3,36 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from itertools import groupby
+from typing import TYPE_CHECKING
 
 from restitution import datasets
 from restitution.conditions import LARGEST, SMALLEST, Conditions
 from restitution.errors import Defect, InputError
 from restitution.foreign.asking import check_order, overridden, what_is_needed, without_use
-from restitution.foreign.number_text import as_number
+from restitution.foreign.completed import Columns, Quantity, as_filmed, completed
+from restitution.foreign.number_text import as_number, is_lost
 from restitution.foreign.settings import Settings, Units
-from restitution.foreign.table import ROW, ForeignTable, in_words, lost_rows
+from restitution.foreign.table import ROW, ForeignTable
 from restitution.tables.reading import read_table
 from restitution.tracks import Track, contacts
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Quantity = Literal["gap", "velocity"]
 COLUMNS: dict[Quantity, str] = {"gap": "gap_m", "velocity": "velocity_m_s"}
 """The project's own names of the value of a track."""
 _SCHEMAS: dict[Quantity, str] = {"gap": "trajectory", "velocity": "settling"}
 SURE = 0.6
 """Likelihood below which a position counts as lost; the default of DeepLabCut."""
-
-
-@dataclass(frozen=True)
-class Columns:
-    """Which columns of a file are the time and the value, and what the value is."""
-
-    time: str
-    value: str
-    quantity: Quantity
 
 
 @dataclass(frozen=True)
@@ -130,8 +122,9 @@ def read_track(table: ForeignTable, settings: Settings, conditions: Conditions |
     columns = columns_of(table, settings)
     if columns is None:
         raise InputError(what_is_needed(table, settings))
-    notes = overridden(table, settings, columns.time, columns.value)
-    settings = _completed(table, settings, columns)
+    table, played = as_filmed(table, settings, columns.time)
+    notes = (*played, *overridden(table, settings, columns.time, columns.value))
+    settings = completed(table, settings, columns)
     notes = (*notes, *without_use(table, settings, columns.time, columns.value))
     units = Units.of(settings, conditions)
     time_unit = units.time(settings.time_unit or "s")
@@ -179,57 +172,16 @@ def _of_particle(table: ForeignTable, settings: Settings) -> ForeignTable:
             columns = columns_of(one, settings)
             if columns is None:
                 raise InputError(what_is_needed(one, settings))
-            _completed(one, settings, columns)
+            completed(one, settings, columns)
         except InputError as more:
             also = "; ".join(defect.rule for defect in more.defects)
             raise InputError(replace(several.defects[0], rule=f"{several.defects[0].rule}; {also}")) from None
         raise
 
 
-def _completed(table: ForeignTable, settings: Settings, columns: Columns) -> Settings:
-    """The settings with what the file says; raises with all that neither says."""
-    program, ours = table.program, {"time_s": "s", "gap_m": "m", "velocity_m_s": "m/s"}
-    known = {} if program is None else program.units
-
-    def unit_of(name: str) -> str | None:
-        short = name.rpartition("/")[2].lower()
-        return ours.get(name) or table.units.get(name) or known.get(name.lower()) or known.get(short)
-
-    found = {
-        "time_unit": unit_of(columns.time),
-        "unit": unit_of(columns.value),
-        "direction": "down" if program is not None and program.down else None,
-        "point": "centre" if program is not None and program.centre else None,
-    }
-    completed = settings.over(Settings(**{k: v for k, v in found.items() if v is not None}))
-    needed = []
-    if completed.time_unit is None:
-        needed.append(f"--time-unit U of {columns.time} (s, ms, frame, 0.5ms, sqrt(d/g))")
-    elif "frame" in completed.time_unit and completed.frames_per_second is None:
-        needed.append(f"--fps N: frames a second, for {columns.time} counts frames")
-    if completed.unit is None:
-        needed.append(f"--unit U of {columns.value} (m, mm, px, 0.3mm, d)")
-    elif "px" in completed.unit and completed.pixel is None:
-        needed.append(f"--pixel LENGTH of one (0.125mm), for {columns.value} is in pixels")
-    if columns.quantity == "gap" and program is not None:
-        if program.either_way and completed.direction is None:
-            needed.append(
-                f"--direction up or down: whether {columns.value} grows away from the wall or towards it"
-            )
-        if completed.wall is None and (program.down or program.either_way):
-            wall = "--wall X" if completed.point else "--wall X and --point centre or lowest"
-            needed.append(f"{wall}: {columns.value} of the wall, or --wall rest: where the sphere comes to rest")
-        elif completed.point is None and completed.wall != "rest":
-            needed.append(f"--point centre or lowest: whose {columns.value} it is")
-    if needed:
-        what = f"is a file of {program.name}" if program is not None else "does not say what its numbers are"
-        raise InputError(Defect(f"{what}; say {'; '.join(needed)} (or --settings FILE)", file=table.file))
-    return completed
-
-
 def _without_lost(table: ForeignTable, columns: Columns) -> tuple[ForeignTable, tuple[str, ...]]:
     """The rows that have a time and a position; a particle's frames in the order of time."""
-    lost = set(lost_rows(table, [columns.time, columns.value]))
+    lost = set(_lost_rows(table, [columns.time, columns.value]))
     quality = table.program.quality if table.program is not None else None
     own = quality and table.column(f"{columns.value.rpartition('/')[0]}/{quality}".lstrip("/"))
     if own:
@@ -246,8 +198,28 @@ def _without_lost(table: ForeignTable, columns: Columns) -> tuple[ForeignTable, 
     if lost:
         lines = [table.rows[i][0] for i in sorted(lost)]
         one = len(lines) == 1
-        notes = (f"{len(lines)} frame{'' if one else 's'} without a position left out: {in_words(lines)}",)
+        notes = (f"{len(lines)} frame{'' if one else 's'} without a position left out: {_lines(lines)}",)
     return replace(table, rows=rows), notes
+
+
+def _lost_rows(table: ForeignTable, names: list[str]) -> list[int]:
+    """Which rows have no value in one of the columns."""
+    width, found = len(table.header), set[int]()
+    for i in map(table.header.index, names):
+        cells = [row[i] if len(row) == width else "0" for _, row in table.rows]
+        lost = {cell for cell in set(cells) if is_lost(cell)}
+        found |= {k for k, cell in enumerate(cells) if cell in lost} if lost else set()
+    return sorted(found)
+
+
+def _lines(lines: list[int]) -> str:
+    """Numbers of lines as ranges: "rows 62 to 71, 122"."""
+    parts = []
+    for _, run in groupby(enumerate(lines), key=lambda pair: pair[1] - pair[0]):
+        run_lines = [line for _, line in run]
+        parts.append(f"{run_lines[0]}" + (f" to {run_lines[-1]}" if len(run_lines) > 1 else ""))
+    shown = ", ".join(parts[:5]) + (f" and {len(parts) - 5} more places" if len(parts) > 5 else "")
+    return f"row{'s' if len(lines) > 1 else ''} {shown}"
 
 
 def _gap_from(

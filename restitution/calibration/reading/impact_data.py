@@ -14,13 +14,14 @@ from pathlib import Path
 from typing import Any
 
 from restitution import datasets
-from restitution.calibration.reading.digitizer import PIXEL, bars_left_out, is_export, read_export
+from restitution.calibration.reading.digitizer import bars_left_out, is_export, read_export
 from restitution.calibration.reading.impact_table import SCHEMA, from_table
 from restitution.calibration.reading.observations import Observations, join
 from restitution.calibration.reading.reading import Reading
 from restitution.calibration.reading.track_impacts import from_track, from_track_file
 from restitution.errors import Defect, InputError
 from restitution.foreign.asking import what_is_needed
+from restitution.foreign.formats.digitised import PIXEL, is_project
 from restitution.foreign.table import read_foreign
 from restitution.foreign.track import is_track
 from restitution.inputs import read_bytes
@@ -111,7 +112,7 @@ def _from_export(path: str, how: Reading, digest: str) -> Observations:
     """The points of a digitised plot, each data set a source."""
     _known_columns(dict(zip(how.axes, ("--x", "--y"), strict=True)))
     points = from_table(read_export(path, how.axes, how.track.decimal), replace(how, columns={}), path, digest)
-    if not path.endswith(".json"):
+    if not is_project(path):
         return points
     note = f"{path}: errors are those of a click, {PIXEL:g} pixel; those of the measurement are in the scatter"
     bars = bars_left_out(path)

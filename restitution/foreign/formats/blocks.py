@@ -11,6 +11,9 @@ from collections.abc import Sequence
 from restitution.errors import Defect, InputError
 from restitution.foreign.layout import Row, split
 
+Read = tuple[list[str], list[Row], dict[str, str]]
+"""Names, rows, and the units that the file states by name."""
+
 _ITEM = "ITEM:"
 _KINOVEA = "#kinovea trajectory data export"
 _TIME = re.compile(r"Time = ([\d.eE+-]+)s?\s*$")
@@ -43,7 +46,7 @@ def is_openfoam_log(lines: Sequence[str]) -> bool:
     return any(_CENTRE.match(line) for line in lines) and any(_TIME.match(line) for line in lines)
 
 
-def mtrackj(lines: Sequence[str], file: str) -> tuple[list[str], list[Row]]:
+def mtrackj(lines: Sequence[str], file: str) -> Read:
     """Names and rows of all points, the number of their track in front; of several clusters "cluster.track".
 
     A point is ``Point ID x y z t c``, in pixels and frames.
@@ -64,10 +67,10 @@ def mtrackj(lines: Sequence[str], file: str) -> tuple[list[str], list[Row]]:
             rows.append(Row(number, [track, *cells[1:5]]))
     if not rows:
         raise InputError(Defect("is a file of MTrackJ without points", file=file))
-    return ["track", "x", "y", "z", "t"], rows
+    return ["track", "x", "y", "z", "t"], rows, {}
 
 
-def lammps_log(lines: Sequence[str], file: str) -> tuple[list[str], list[Row]]:
+def lammps_log(lines: Sequence[str], file: str) -> Read:
     """Names and rows of all tables, each from "Step ..." to "Loop time ..."; a step that two have is told once."""
     names: list[str] = []
     rows: dict[str, Row] = {}
@@ -84,10 +87,10 @@ def lammps_log(lines: Sequence[str], file: str) -> tuple[list[str], list[Row]]:
             rows[cells[0]] = Row(number, cells)
     if not rows:
         raise InputError(Defect("is a log of LAMMPS without a table that begins with Step", file=file))
-    return names, list(rows.values())
+    return names, list(rows.values()), {}
 
 
-def openfoam_log(lines: Sequence[str]) -> tuple[list[str], list[Row]]:
+def openfoam_log(lines: Sequence[str], _file: str) -> Read:
     """Names and rows of time and centre of mass, of each time the last that was computed."""
     rows: dict[str, Row] = {}
     time = ""
@@ -96,10 +99,10 @@ def openfoam_log(lines: Sequence[str]) -> tuple[list[str], list[Row]]:
             time = match[1]
         elif time and (match := _CENTRE.match(line)):
             rows[time] = Row(number, [time, *match[1].split()])
-    return ["time", *(f"centreOfMass_{axis}" for axis in "xyz")], list(rows.values())
+    return ["time", *(f"centreOfMass_{axis}" for axis in "xyz")], list(rows.values()), {}
 
 
-def lammps(lines: Sequence[str], file: str) -> tuple[list[str], list[Row]]:
+def lammps(lines: Sequence[str], file: str) -> Read:
     """Names and rows of all atoms of all steps, the step in front."""
     names: list[str] = []
     rows: list[Row] = []
@@ -118,16 +121,16 @@ def lammps(lines: Sequence[str], file: str) -> tuple[list[str], list[Row]]:
             rows.append(Row(number, [step, *line.split()]))
     if not rows:
         raise InputError(Defect("is a LAMMPS dump without atoms", file=file))
-    return names, rows
+    return names, rows, {}
 
 
-def kinovea(lines: Sequence[str]) -> tuple[list[str], list[Row]]:
-    """Names and rows of all trajectories, the name or number of each in front, its times in seconds.
+def kinovea(lines: Sequence[str], _file: str) -> Read:
+    """Names and rows of all trajectories, the name or number of each in front.
 
-    Times are numbers, or h:mm:ss:cc with hundredths of a second.
+    Times are numbers, or h:mm:ss:cc with hundredths of a second, which are made seconds.
     """
     rows: list[Row] = []
-    trajectory, count, named, gap = "", 0, "", True
+    trajectory, count, named, gap, timed = "", 0, "", True, False
     for number, line in enumerate(lines, 1):
         text = line.strip()
         if text.startswith("#"):
@@ -140,8 +143,9 @@ def kinovea(lines: Sequence[str]) -> tuple[list[str], list[Row]]:
                 trajectory = named if named and named.upper() != "T X Y" and count > 0 else str(count)
                 named, gap = "", False
             cells = split(text, " ")
+            timed |= _CLOCK.fullmatch(cells[0]) is not None
             rows.append(Row(number, [trajectory, _seconds(cells[0]), *cells[1:]]))
-    return ["trajectory", "T", "X", "Y"], rows
+    return ["trajectory", "T", "X", "Y"], rows, {"T": "s"} if timed else {}
 
 
 def _seconds(cell: str) -> str:

@@ -1,4 +1,4 @@
-"""Tracks in XML: TrackMate's model and its "Export tracks to XML file", Kinovea's analysis (.kva).
+"""Tracks in XML: TrackMate's model and its "Export tracks to XML file", Kinovea's analysis (.kva), Icy's tracks.
 
 TrackMate keeps spots by frame and says by edges which belong to one track (TmXmlWriter of fiji/TrackMate); the
 shorter export has a list of detections a particle (its ExportTracksToXML). Kinovea keeps ``x;y;t`` of each point,
@@ -16,7 +16,7 @@ from restitution.errors import Defect, InputError
 from restitution.foreign.formats.spots import Spots
 from restitution.foreign.heading import unit_of
 from restitution.foreign.layout import Row
-from restitution.foreign.programs import KINOVEA_TEXT, TRACKMATE
+from restitution.foreign.programs import ICY, KINOVEA_TEXT, TRACKMATE
 
 _DEEPEST = 50
 """Elements within one another; the files that are read have seven."""
@@ -38,10 +38,10 @@ def is_markup(text: str) -> bool:
 def spots(text: str, file: str) -> Spots:
     """The tracks in a text; raises :class:`InputError` where it is no XML, or of none of these programs."""
     elements = _elements(text, file)
-    readers = {"TrackMate": _model, "Tracks": _tracks, "KinoveaVideoAnalysis": _kinovea}
+    readers = {"TrackMate": _model, "Tracks": _tracks, "KinoveaVideoAnalysis": _kinovea, "root": _icy}
     root = elements[0].name
     if root not in readers:
-        rule = f"is XML of {root}, no tracks of TrackMate or Kinovea; export the table as CSV"
+        rule = f"is XML of {root}, no tracks of TrackMate, Kinovea or Icy; export the table as CSV"
         raise InputError(Defect(rule, file=file))
     found = readers[root](elements)
     if not found.rows:
@@ -122,6 +122,17 @@ def _tracks(elements: Sequence[_Element]) -> Spots:
     return Spots(names, rows, TRACKMATE, units if timed else units | {"POSITION_T": "frame"})
 
 
+def _icy(elements: Sequence[_Element]) -> Spots:
+    """Icy's tracks: t counts frames, places are in pixels."""
+    rows, track = [], ""
+    for e in elements:
+        if e.name == "track":
+            track = e.attributes.get("id", "")
+        elif e.name == "detection" and track:
+            rows.append(Row(e.line, [track, *(e.attributes.get(name, "") for name in "txyz")]))
+    return Spots(["track", "t", "x", "y", "z"], rows, ICY)
+
+
 def _times(count: str, interval: str | None) -> str:
     try:
         return f"{float(count) * float(interval or ''):.12g}"
@@ -160,7 +171,9 @@ def _kinovea(elements: Sequence[_Element]) -> Spots:
         frame = ((_number(stamp) or 0.0) - begin) / (a_frame or 1.0)
         rows.append(Row(e.line, [own, f"{frame / rate:.10g}" if rate else f"{frame:.10g}", x, y]))
     clock = "s" if rate else "frame"
-    program = replace(KINOVEA_TEXT, units={"t": clock, "x": "px", "y": "px"}, down=not calibrated)
+    program = replace(
+        KINOVEA_TEXT, units={"t": clock, "x": "px", "y": "px"}, down=not calibrated, either_way=False
+    )
     units = {"T": clock} | (dict.fromkeys("XY", unit_of(unit)) if calibrated else {})
     return Spots(["trajectory", "T", "X", "Y"], rows, program, units)
 

@@ -1,12 +1,15 @@
 """Digitised plots as programs write them: European locales, names with commas, older projects, error bars."""
 
+import io
 import json
+import tarfile
 
 import numpy as np
 import pytest
 
 from restitution.calibration import read
 from restitution.errors import InputError
+from restitution.foreign import Settings, read_foreign, read_track
 
 
 def exported(tmp_path, name, content):
@@ -103,3 +106,63 @@ def test_tables_of_impacts_joined_with_their_names_are_one(tmp_path):
     impacts = exported(tmp_path, "all.csv", head + "a,1,10,0.25\na,2,50,0.6125\n" + head + "b,1,200,0.9\n")
     assert list(impacts.labels["source"]) == ["a", "a", "b"]
     np.testing.assert_allclose(impacts.e, E)
+
+
+def packed(path, content, name="fig/wpd.json"):
+    with tarfile.open(path, "w") as archive:
+        for member, data in (("fig/info.json", b"{}"), (name, json.dumps(content).encode())):
+            about = tarfile.TarInfo(member)
+            about.size = len(data)
+            archive.addfile(about, io.BytesIO(data))
+    return path
+
+
+def of_version_4(*names):
+    axes = {"name": "XY", "type": "XYAxes", "isLogX": False, "isLogY": False, "calibrationPoints": CALIBRATION}
+    sets = [{"name": name, "axesName": "XY", "data": [*POINTS[::-1], {"x": 25, "y": 40}]} for name in names]
+    return {"axesColl": [axes], "datasetColl": sets}
+
+
+def test_a_project_in_its_archive(tmp_path):
+    path = packed(tmp_path / "fig.tar", of_version_4("glass"))
+    impacts = read(path, stokes="st", speed="far")
+    np.testing.assert_allclose(sorted(impacts.St), [*ST, 250])
+    assert all(impacts.e_sigma > 0)  # of a click
+    with pytest.raises(InputError, match=r"wpd\.json"):
+        read(packed(tmp_path / "other.tar", {}, "fig/notes.json"), stokes="st", speed="far")
+
+
+@pytest.mark.parametrize("sign", [",", ";"])
+def test_curves_side_by_side_over_one_x(tmp_path, sign):
+    """Engauge's table of the points of all curves: a curve has none at the x of another."""
+    rows = ["x,steel,glass", "10,0.25,", "50,0.6125,", "20,,0.3", "200,0.9,"]
+    text = "\n".join(row if sign == "," else row.replace(",", ";").replace(".", ",") for row in rows)
+    impacts = exported(tmp_path, "plot.csv", text + "\n")
+    assert sorted(zip(impacts.labels["source"], impacts.St, strict=True)) == [
+        ("glass", 20.0), ("steel", 10.0), ("steel", 50.0), ("steel", 200.0),
+    ]  # fmt: skip
+    np.testing.assert_allclose(sorted(impacts.e), [0.25, 0.3, 0.6125, 0.9])
+
+
+def test_x_and_y_alone(tmp_path):
+    impacts = exported(tmp_path, "plot.csv", "x,y\n10,0.25\n50,0.6125\n200,0.9\n")
+    np.testing.assert_allclose(impacts.e, E)
+    assert set(impacts.labels["source"]) == {"plot"}
+
+
+@pytest.mark.parametrize("archived", [False, True])
+def test_a_height_against_time_is_a_track(tmp_path, archived):
+    """Its clicks in any order; its unit and whose height it is are asked for."""
+    content, path = of_version_4("steel", "brass"), tmp_path / "height.json"
+    if archived:
+        packed(path := tmp_path / "height.tar", content)
+    else:
+        path.write_text(json.dumps(content))
+    table = read_foreign(path)
+    assert table.particles() == {"steel": 4, "brass": 4}
+    stated = {"particle": "brass", "time_unit": "ms", "unit": "mm", "point": "lowest"}
+    track = read_track(table, Settings(**stated), None).table
+    np.testing.assert_allclose(track.time_s, np.array([*ST, 250]) / 1e3)
+    np.testing.assert_allclose(track.gap_m, np.array([*E, 0.6]) / 1e3)
+    with pytest.raises(InputError, match=r"--time-unit.*--unit.*--point"):
+        read_track(table, Settings(particle="brass"), None)

@@ -20,14 +20,52 @@ def written(times):
     return "t (s);y (mm)\n" + "".join(f"{t};{y}\n" for t, y in zip(times, GAPS, strict=True))
 
 
-def test_frames_a_second_against_the_clock_of_a_player(tmp_path):
-    """Thirty frames a second played of a thousand filmed: one of the player's seconds was 0.03 s."""
-    played = written([f"{n / 30:.6f}" for n in range(6)])
+@pytest.mark.parametrize("rate", [24, 25, 30000 / 1001, 30, 60])
+def test_the_clock_of_a_player_is_taken_as_frames_where_those_of_the_camera_are_stated(tmp_path, rate):
+    played = written([f"{n / rate:.6f}" for n in range(6)])
+    found = track(tmp_path, played, time="t (s)", frames_per_second=1000.0)
+    np.testing.assert_allclose(found.table.time_s, np.arange(6) / 1000, atol=1e-9)
+    assert any("as a player does" in note for note in found.notes)
+    own = track(tmp_path, played, time="t (s)").table.time_s  # a film of that rate: nothing is guessed
+    np.testing.assert_allclose(own, np.arange(6) / rate, atol=2e-6)
+
+
+def test_hundredths_of_a_player_s_second_and_lost_frames(tmp_path):
+    kept = [0, 1, 2, 3, 5, 6]
+    cut = [int(100 * n / 30) for n in kept]  # as a clock shows them
+    text = "#Kinovea Trajectory data export\n#T X Y\n"
+    text += "".join(f"0:00:00:{c:02d} 12.00 {y}\n" for c, y in zip(cut, GAPS, strict=True))
+    found = track(
+        tmp_path, text, position="Y", unit="mm", direction="up", wall=0.0, frames_per_second=2000.0
+    ).table
+    np.testing.assert_allclose(found.time_s, np.array(kept) / 2000)
+
+
+def test_a_frame_counted_as_a_second(tmp_path):
+    """TrackMate that was told no rate writes "sec" and one a frame; what it needs is asked for at once."""
+    text = "TRACK_ID,POSITION_X,POSITION_Y,POSITION_T,FRAME\nTrack,X,Y,T,F\n,(pixel),(pixel),(sec),\n"
+    text += "".join(f"0,1.0,{100 - 10 * y},{n}.0,{n}\n" for n, y in enumerate(GAPS))
+    stated = {"position": None, "point": None, "pixel": "0.1 mm", "wall": 100.0}
     with pytest.raises(InputError) as refused:
-        track(tmp_path, played, time="t (s)", frames_per_second=1000.0)
-    assert "--time-unit 0.03s" in str(refused.value)
-    times = track(tmp_path, played, time="t (s)", time_unit="0.03s", frames_per_second=1000.0).table.time_s
-    np.testing.assert_allclose(times, np.arange(6) / 1000, atol=2e-5)
+        track(tmp_path, text, **stated)
+    assert "--fps" in str(refused.value)
+    found = track(tmp_path, text, **stated, frames_per_second=500.0).table
+    np.testing.assert_allclose(found.time_s, np.arange(6) / 500)
+
+
+def test_what_is_asked_for_names_the_frames_of_the_camera(tmp_path):
+    """A film played slowly is told from no other by its times, so that the first question asks for it."""
+    text = "mass A\t\t\nt\tx\ty\n" + "".join(f"{n / 30:.6f}\t0\t{y}\n" for n, y in enumerate(GAPS))
+    with pytest.raises(InputError) as refused:
+        track(tmp_path, text, position=None, point=None)
+    assert all(option in str(refused.value) for option in ("--fps", "--unit", "--point"))
+
+
+def test_frames_a_second_against_another_clock(tmp_path):
+    """Forty a second is no player's: one of the two is wrong."""
+    with pytest.raises(InputError) as refused:
+        track(tmp_path, written([f"{n / 40:.6f}" for n in range(6)]), time="t (s)", frames_per_second=1000.0)
+    assert "--time-unit 0.04s" in str(refused.value)
 
 
 def test_frames_a_second_as_the_file_has_them(tmp_path):

@@ -164,6 +164,7 @@ def kinovea_analysis(calibrated):
 
 METRES = {"time": "t", "position": "y", "time_unit": "s", "unit": "m"}
 CENTRES = {**METRES, "point": "centre"}
+KINOVEA = {"unit": "cm", "point": "centre", "direction": "up", "wall": 0.0}
 FILES = {
     "the project's own": (lines(["time_s,gap_m"], csv(T, GAP)), {}),
     "trailing commas": (lines(["time_s,gap_m,,"], [f"{row},," for row in csv(T, GAP)]), {}),
@@ -228,8 +229,8 @@ FILES = {
         lines(['"Time";"Ball 1/0/X";"Ball 1/0/Y"'],
               [comma(f'"{1e3 * t:.6f}";"1.5";"{1e2 * y:.7f}"') for t, y in zip(T, CENTRE, strict=True)]),
         {"unit": "cm", "point": "centre"}),
-    "Kinovea, text": (kinovea_text(), {"unit": "cm", "point": "centre", "particle": "ball"}),
-    "Kinovea, clock": (kinovea_clock(), {"unit": "cm", "point": "centre", "time_unit": "0.4s"}),
+    "Kinovea, text": (kinovea_text(), {**KINOVEA, "time_unit": "s", "particle": "ball"}),
+    "Kinovea, clock": (kinovea_clock(), {**KINOVEA, "time_unit": "0.4s"}),
     "LAMMPS": (lammps(), {"position": "z", "time_unit": "1e-5 s", "unit": "m", "particle": 1}),
     "TrackMate, calibrated, with columns of counts": (
         lines(["TRACK_ID,QUALITY,POSITION_X,POSITION_Y,POSITION_T,FRAME,MEAN_INTENSITY_CH1",
