@@ -17,11 +17,9 @@ from restitution.tables.widths import check_widths
 from restitution.units import NAMES_BEYOND_ASCII
 
 _BINARY = {
-    b"PK\x03\x04": "is a spreadsheet or an archive, no text; save the table as CSV",
+    b"PK\x03\x04": "is an archive, no text; save the table as CSV",
     b"\xd0\xcf\x11\xe0": "is an old spreadsheet, no text; save the table as CSV",
     b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.formats.hdf5`
-    b"\x93NUMPY": "is an array of NumPy, no text; save it with numpy.savetxt",
-    b"MATLAB 5.0": "is a workspace of MATLAB, no text; save the table with writematrix",
 }
 
 

@@ -72,6 +72,8 @@ def heading_of(layout: Layout) -> Heading:
         if are_units(placed) and at > 0 and not units:
             units = {i: unit_of(text) for i, text in placed.items() if _is_unit(text)}
             continue
+        if any(not placed.get(i) for i in filled) and any(_is_whole(c, width, filled) for _, c in above[:at]):
+            continue  # remarks on the columns, as Origin has them below names and units
         known = next((j for j in range(at) if program_of(above[j][1]) and _placed(above[j][1], width, filled)), at)
         line, placed = above[known][0], _placed(above[known][1], width, filled) or placed
         heading.line, heading.names = line, _with_tracks(placed, [cells for _, cells in above[:known]])
@@ -158,6 +160,12 @@ def _of_words(text: str, width: int) -> dict[int, str] | None:
                 name = []
         apart += [" ".join(name)] if name else []
     return dict(enumerate(apart)) if len(apart) == width > 1 else None
+
+
+def _is_whole(cells: list[str], width: int, filled: list[int]) -> bool:
+    """Whether a line has a word for each column that has any content."""
+    placed = _placed(cells, width, filled)
+    return placed is not None and are_words(placed) and all(placed.get(i) for i in filled)
 
 
 def _is_title(cells: list[str], width: int) -> bool:

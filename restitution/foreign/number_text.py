@@ -24,17 +24,19 @@ _CLOCK = re.compile(
     r"((?P<date>\d{4}-\d\d-\d\d)[T ])?(?P<h>\d{1,3}):(?P<min>[0-5]\d):(?P<s>[0-5]\d)([.,](?P<part>\d+))?Z?",
     re.ASCII,
 )
+_DURATION = re.compile(r"([+-]?\d+(?:\.\d*)?(?:e[+-]?\d+)?) sec", re.ASCII)
 _LOST = {"", "na", "n/a", "#n/a", "null", "none", "-", "--", "nan", "+nan", "-nan", "nan(ind)", "-nan(ind)"}
 
 
 def seconds(cell: str) -> str | None:
-    """The seconds of a time of day, 10:15:03.250, or of a date and a time; else None.
+    """The seconds of a time of day, 10:15:03.250, of a date and a time, of MATLAB's "0.25 sec"; else None.
 
     Days are counted from the last thousandth, so that microseconds remain.
     """
     match = _CLOCK.fullmatch(cell.strip())
     if match is None:
-        return None
+        duration = _DURATION.fullmatch(cell.strip())
+        return None if duration is None else duration[1]
     try:
         day = date.fromisoformat(match["date"]).toordinal() % 1000 if match["date"] else 0
     except ValueError:

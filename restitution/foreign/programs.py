@@ -137,6 +137,7 @@ LAMMPS_LOG = Program("LAMMPS", lambda names: False, time="time", centre=True)
 OPENFOAM = Program("OpenFOAM", lambda names: False, time="time", units={"time": "s"})
 TECPLOT = Program("Tecplot", lambda names: False, time="solutiontime", units={"solutiontime": "s"})
 FLUENT = Program("Fluent", lambda names: False, particle="curve")
+GRACE = Program("Grace", lambda names: False, particle="set")
 LABVIEW = Program("LabVIEW", lambda names: False, time="x_value")
 OPENPTV = Program(
     "OpenPTV", lambda names: False, time="frame", particle="trajectory", centre=True,

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from restitution.errors import Defect, InputError
 from restitution.foreign import programs
-from restitution.foreign.file_text import lines_of, mistaken, text_of
-from restitution.foreign.formats import blocks, digitised, hdf5, markup, openptv, stopwatch, zones
-from restitution.foreign.formats.spots import Spots
+from restitution.foreign.file_text import lines_of, mistaken
+from restitution.foreign.formats import arrays, digitised, hdf5, kinds, markup, openptv, stopwatch
+from restitution.foreign.formats.spots import Read, Spots
 from restitution.foreign.heading import Heading, data_rows, heading_of, unit_in, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain, seconds
@@ -24,19 +24,6 @@ ROW = "row"
 """A column that every table has, unless the file has its own: which row of data it is, from 0."""
 _MOST_NAMED = 20
 """Particles that a message names."""
-
-
-_BLOCKS: tuple[tuple[Callable[[list[str]], bool], Callable[[list[str], str], blocks.Read], Program], ...] = (
-    (blocks.is_lammps, blocks.lammps, programs.LAMMPS),
-    (blocks.is_kinovea, blocks.kinovea, programs.KINOVEA_TEXT),
-    (blocks.is_mtrackj, blocks.mtrackj, programs.MTRACKJ),
-    (blocks.is_lammps_log, blocks.lammps_log, programs.LAMMPS_LOG),
-    (blocks.is_openfoam_log, blocks.openfoam_log, programs.OPENFOAM),
-    (zones.is_tecplot, zones.tecplot, programs.TECPLOT),
-    (zones.is_fluent, zones.fluent, programs.FLUENT),
-    (zones.is_labview, zones.labview, programs.LABVIEW),
-)
-"""How a text of many small tables is known, what it holds, whose it is."""
 
 
 @dataclass
@@ -177,13 +164,15 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
         return _of_spots(file, hdf5.spots(data, file))
     if digitised.is_archive(data):
         return _of_curves(path)
-    text = text_of(data, file)
-    if text.lstrip().startswith("{") and '"calibration' in text:
-        return _of_curves(path)
+    text = kinds.text_in(data, file)
+    if text.lstrip().startswith(("{", "[")):
+        if '"calibration' in text:
+            return _of_curves(path)
+        text = arrays.text_of_json(text.encode(), file) or text
     if markup.is_markup(text):
         return _of_spots(file, markup.spots(text, file))
     lines = lines_of(text, file)
-    for known, read, program in _BLOCKS:
+    for known, read, program in kinds.BLOCKS:
         if known(lines):
             return _of_blocks(file, read(lines, file), program)
     layout = layout_of(lines, file, decimal)
@@ -259,7 +248,7 @@ def _of_curves(path: str | Path) -> ForeignTable:
     return replace(first, sections=dict(tables), section_rows={name: len(c.x) for name, c in curves.items()})
 
 
-def _of_blocks(file: str, read: blocks.Read, program: Program) -> ForeignTable:
+def _of_blocks(file: str, read: Read, program: Program) -> ForeignTable:
     names, rows, units = read
     decimal = decimal_of(cell for row in rows for cell in row.cells[1:])[0] or "."
     cut = [row for row in rows if len(row.cells) != len(names)]

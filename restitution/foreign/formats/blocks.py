@@ -9,10 +9,8 @@ import re
 from collections.abc import Sequence
 
 from restitution.errors import Defect, InputError
+from restitution.foreign.formats.spots import Read
 from restitution.foreign.layout import Row, split
-
-Read = tuple[list[str], list[Row], dict[str, str]]
-"""Names, rows, and the units that the file states by name."""
 
 _ITEM = "ITEM:"
 _KINOVEA = "#kinovea trajectory data export"

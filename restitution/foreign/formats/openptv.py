@@ -11,7 +11,7 @@ from pathlib import Path
 
 from restitution.errors import Defect, InputError
 from restitution.foreign.file_text import text_of
-from restitution.foreign.formats.blocks import Read
+from restitution.foreign.formats.spots import Read
 from restitution.foreign.layout import Row
 from restitution.inputs import read_bytes
 

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from restitution.foreign.layout import Row
 from restitution.foreign.programs import Program
 
+Read = tuple[list[str], list[Row], dict[str, str]]
+"""Names, rows, and the units that the file states by name."""
+
 
 @dataclass(frozen=True)
 class Spots:

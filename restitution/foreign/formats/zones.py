@@ -1,4 +1,4 @@
-"""Curves and zones of plotting files: Tecplot's (DaVis, solvers), Fluent's plots; measurements of LabVIEW.
+"""Curves and zones of plotting files: Tecplot's (DaVis, solvers), Fluent's, Grace's; measurements of LabVIEW.
 
 Tecplot: ``VARIABLES = "x [mm]", ...``, then ``ZONE ... SOLUTIONTIME=t`` and its rows, a time step a zone. Fluent:
 ``(labels "time" "y")``, then ``((xy/key/label "name")``, rows of two numbers, ``)``. LabVIEW (.lvm): tags, a head
@@ -11,7 +11,7 @@ import re
 from collections.abc import Sequence
 
 from restitution.errors import Defect, InputError
-from restitution.foreign.formats.blocks import Read
+from restitution.foreign.formats.spots import Read
 from restitution.foreign.heading import unit_of
 from restitution.foreign.layout import Row, split
 from restitution.foreign.number_text import is_number
@@ -69,6 +69,27 @@ def fluent(lines: Sequence[str], _file: str) -> Read:
         elif curve and len(cells := line.split()) == 2 and is_number(cells[0]):
             rows.append(Row(number, [curve, *cells]))
     return ["curve", *names], rows, {}
+
+
+def is_grace(lines: Sequence[str]) -> bool:
+    """Whether the text is a project of Grace, or of GROMACS for it."""
+    return any(re.match(r"@\s*(version|target|type|[xy]axis)\b", line, re.IGNORECASE) for line in lines[:500])
+
+
+def grace(lines: Sequence[str], file: str) -> Read:
+    """Names, by the labels of the axes, and rows of all sets, the number of each in front."""
+    names, rows, number = ["x", "y"], list[Row](), 1
+    for line_number, line in enumerate(lines, 1):
+        if match := re.match(r'@\s*([xy])axis\s+label\s+"([^"]+)"', line):
+            names["xy".index(match[1])] = match[2]
+        elif line.startswith("&"):
+            number += 1
+        elif len(cells := line.split()) >= 2 and all(map(is_number, cells)):
+            rows.append(Row(line_number, [f"{number}", *cells]))
+    if not rows:
+        raise InputError(Defect("is a project of Grace without points", file=file))
+    width = len(rows[0].cells) - 1  # errors, or several y, beside the first two
+    return ["set", *names, *(f"y{k}" for k in range(2, width))], rows, {}
 
 
 def is_labview(lines: Sequence[str]) -> bool:

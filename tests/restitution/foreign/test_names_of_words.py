@@ -72,3 +72,15 @@ def test_the_columns_that_a_message_guesses(tmp_path, head, guess):
 def test_words_of_central_europe_tell_the_code_page(tmp_path):
     path = written(tmp_path, "Czas [s];Wysokość [mm]\n", ";", "cp1250")
     assert read_foreign(path).header == ["Czas [s]", "Wysokość [mm]"]
+
+
+def test_remarks_below_names_and_units(tmp_path):
+    """Origin's export: long names, units, comments."""
+    table = read_foreign(written(tmp_path, "Time\tHeight\ns\tmm\n\tRun 7\n", "\t"))
+    assert (table.header, table.units) == (["Time", "Height"], {"Time": "s", "Height": "mm"})
+
+
+def test_seconds_written_beside_each_number(tmp_path):
+    """MATLAB's table of times: "0.1 sec"."""
+    table = read_foreign(written(tmp_path, "Time,height\n", ",", rows=[(f"{t} sec", y) for t, y in ROWS]))
+    assert (table.units, [cells[0] for _, cells in table.rows]) == ({"Time": "s"}, [f"{t}" for t, _ in ROWS])

@@ -42,6 +42,15 @@ def test_curves_of_a_plot_of_fluent(tmp_path):
     assert seen(table, "ball", time="Flow Time (s)", position="y (mm)") == (TIMES, HEIGHTS)
 
 
+def test_sets_of_grace(tmp_path):
+    text = '# Grace project file\n@version 50122\n@    xaxis  label "t (s)"\n@    yaxis  label "y (mm)"\n'
+    for factor in (1, 0.5):
+        text += "@type xy\n" + "".join(f"{t} {factor * y}\n" for t, y in zip(TIMES, HEIGHTS, strict=True)) + "&\n"
+    table = written(tmp_path, text)
+    assert table.particles() == {"1": 5, "2": 5}
+    assert seen(table, "1", time="t (s)", position="y (mm)") == (TIMES, HEIGHTS)
+
+
 @pytest.mark.parametrize("with_times", [True, False])
 def test_a_measurement_of_labview(tmp_path, with_times):
     text = "LabVIEW Measurement\t\nSeparator\tTab\nTime_Pref\tRelative\n***End_of_Header***\t\n\t\n"

@@ -1,0 +1,119 @@
+"""Numbers kept as arrays: NumPy's .npy, workspaces of MATLAB, JSON of lists or of records, as text.
+
+What is written out has a line of names where there are any, then a row a line, as if saved as text. Of a workspace
+are taken the arrays as long as the longest; tracks of u-track (``tracksFinal``) are rows of track, frame, x, y.
+"""
+
+from __future__ import annotations
+
+import io
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from restitution.errors import Defect, InputError
+from restitution.inputs import json_of
+
+NUMPY, MATLAB = b"\x93NUMPY", b"MATLAB 5.0"
+_WIDEST = 200
+"""Columns of an array that are read."""
+
+
+def is_array(data: bytes) -> bool:
+    """Whether bytes are an array of NumPy or a workspace of MATLAB."""
+    return data.startswith((NUMPY, MATLAB))
+
+
+def text_of_array(data: bytes, file: str) -> str:
+    """Its numbers as text; raises :class:`InputError` where it holds no table of numbers."""
+    return _numpy(data, file) if data.startswith(NUMPY) else _matlab(data, file)
+
+
+def text_of_json(data: bytes, file: str) -> str | None:
+    """A table in JSON as text: lists by name, records, or rows; None where it is none."""
+    content = json_of(data, file)
+    if isinstance(content, dict):
+        columns = {k: v for k, v in content.items() if isinstance(v, list) and not any(map(_nested, v))}
+        longest = max(map(len, columns.values()), default=0)
+        kept = {name: values for name, values in columns.items() if len(values) == longest > 1}
+        return _text(list(kept), list(zip(*kept.values(), strict=True))) if len(kept) > 1 else None
+    if isinstance(content, list) and content and all(isinstance(row, dict) for row in content):
+        names = [name for name in content[0] if not _nested(content[0][name])]
+        return _text(names, [[row.get(name) for name in names] for row in content]) if len(names) > 1 else None
+    if isinstance(content, list) and content and all(isinstance(row, list) for row in content):
+        return _text([], content) if len(content[0]) > 1 else None
+    return None
+
+
+def _nested(value: Any) -> bool:
+    return isinstance(value, list | dict)
+
+
+def _text(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
+    lines = ["\t".join(" ".join(name.split()) for name in names)] if names else []
+    return "\n".join([*lines, *("\t".join("" if v is None else str(v) for v in row) for row in rows)])
+
+
+def _numpy(data: bytes, file: str) -> str:
+    try:
+        array = np.load(io.BytesIO(data), allow_pickle=False)
+    except (ValueError, OSError, EOFError):
+        raise InputError(Defect("is no array of NumPy that holds numbers alone", file=file)) from None
+    if array.dtype.names and array.ndim == 1:
+        return _text(array.dtype.names, array.tolist())
+    if array.ndim != 2 or array.dtype.kind not in "iuf":
+        shape = " x ".join(map(str, array.shape)) or "a single value"
+        raise InputError(Defect(f"is an array of {shape}, no table of rows and columns of numbers", file=file))
+    return _text([], _upright(array).tolist())
+
+
+def _upright(array: np.ndarray) -> np.ndarray:
+    """Rows are the frames, of which there are more than columns."""
+    return array.T if array.shape[0] < array.shape[1] else array
+
+
+def _matlab(data: bytes, file: str) -> str:
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
+
+    wrong = (MatReadError, ValueError, TypeError, LookupError, OSError, EOFError, NotImplementedError, MemoryError)
+    try:
+        content = loadmat(io.BytesIO(data), squeeze_me=False, struct_as_record=True)
+    except (*wrong, ArithmeticError, AttributeError, zlib.error):
+        raise InputError(Defect("is a workspace of MATLAB that cannot be read", file=file)) from None
+    if (tracks := content.get("tracksFinal")) is not None and "tracksCoordAmpCG" in (tracks.dtype.names or ()):
+        return _u_track(tracks)
+    arrays = {
+        name: value
+        for name, value in content.items()
+        if not name.startswith("__")
+        and isinstance(value, np.ndarray)
+        and value.dtype.kind in "iuf"
+        and value.ndim == 2
+    }
+    longest = max((max(value.shape) for value in arrays.values()), default=0)
+    names, columns = [], []
+    for name, value in arrays.items():
+        upright = _upright(value)
+        if len(upright) == longest and upright.shape[1] <= _WIDEST:
+            several = upright.shape[1] > 1
+            names += [f"{name}_{k + 1}" if several else name for k in range(upright.shape[1])]
+            columns += list(upright.T)
+    if longest < 2 or len(columns) < 2:
+        found = ", ".join(arrays) or "none"
+        rule = f"is a workspace of MATLAB without two columns of one length; arrays of numbers in it: {found}"
+        raise InputError(Defect(rule, file=file))
+    return _text(names, np.column_stack(columns).tolist())
+
+
+def _u_track(tracks: np.ndarray) -> str:
+    """Eight numbers a frame, x and y first, from the frame in which the track begins."""
+    rows = []
+    for number, track in enumerate(tracks.ravel(), 1):
+        coordinates = np.atleast_2d(track["tracksCoordAmpCG"])[0]
+        begin = int(np.atleast_2d(track["seqOfEvents"])[:, 0].min()) if "seqOfEvents" in tracks.dtype.names else 1
+        for k, (x, y) in enumerate(zip(coordinates[0::8], coordinates[1::8], strict=False)):
+            rows.append([number, begin + k, float(x), float(y)])
+    return _text(["track", "frame", "x", "y"], rows)
