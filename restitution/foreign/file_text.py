@@ -8,11 +8,9 @@ import itertools
 import re
 import unicodedata
 from functools import cache
-from pathlib import Path
 
 from restitution.errors import Defect, InputError
 from restitution.foreign.programs import POSITIONS, TIMES
-from restitution.inputs import read_bytes
 from restitution.tables.widths import check_widths
 from restitution.units import NAMES_BEYOND_ASCII
 
@@ -44,11 +42,6 @@ def text_of(data: bytes, file: str) -> str:
         row = text[: text.index("\0")].count("\n") + 1
         raise InputError(Defect("has a NUL byte", file=file, row=row))
     return text.replace("\r\n", "\n").replace("\r", "\n")
-
-
-def read_lines(path: str | Path) -> list[str]:
-    """The lines of a table without their ends; raises :class:`InputError` where it is none."""
-    return lines_of(text_of(read_bytes(path), str(path)), str(path))
 
 
 def lines_of(text: str, file: str) -> list[str]:

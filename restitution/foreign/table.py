@@ -162,12 +162,12 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
         return _of_blocks(file, openptv.trajectories(path), programs.OPENPTV)
     if (data := read_bytes(path)).startswith(hdf5.MAGIC):
         return _of_spots(file, hdf5.spots(data, file))
-    if digitised.is_archive(data):
+    if digitised.is_project(path):
         return _of_curves(path)
     text = kinds.text_in(data, file)
-    if text.lstrip().startswith(("{", "[")):
-        if '"calibration' in text:
-            return _of_curves(path)
+    if (stripped := text.strip())[:1] == "{" or (
+        stripped[:1] == "[" and stripped[-1:] == "]"
+    ):  # a unit may begin it
         text = arrays.text_of_json(text.encode(), file) or text
     if markup.is_markup(text):
         return _of_spots(file, markup.spots(text, file))

@@ -17,6 +17,8 @@ from restitution.tables.widths import check_widths
 from restitution.units import NUMBER
 
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
+_BINARY = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0", b"\x89HDF", b"\x93NUMPY", b"MATLAB 5.0")
+"""How files begin that are no text at all, of which no line is worth a defect of its own."""
 
 
 class Cells(dict[str, str]):
@@ -47,6 +49,8 @@ class CsvText:
             data = read_bytes(path)
             if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
                 text._defect("is UTF-16 text; save it as UTF-8", 1)
+            elif data.startswith(_BINARY):
+                text._defect("is no text, but a spreadsheet or binary file; save the table as CSV in UTF-8")
             elif not data.removeprefix(codecs.BOM_UTF8).strip():
                 text._defect("is empty")
             else:

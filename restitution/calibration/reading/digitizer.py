@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.errors import Defect, InputError
-from restitution.foreign.file_text import read_lines
 from restitution.foreign.formats.digitised import curves, is_project
+from restitution.foreign.formats.kinds import read_lines
 from restitution.foreign.heading import data_rows, heading_of
 from restitution.foreign.layout import Layout, Row, layout_of
 from restitution.foreign.number_text import Decimal, plain
@@ -29,7 +29,10 @@ def is_export(path: str | Path, decimal: Decimal | None = None, columns_given: b
     """
     if is_project(path):
         return True
-    layout = layout_of(read_lines(path), str(path), decimal)
+    try:
+        layout = layout_of(read_lines(path), str(path), decimal)
+    except InputError:
+        return False  # markup, HDF5: tracks, or for their reader to refuse
     rows = layout.rows
     if not rows:
         return False

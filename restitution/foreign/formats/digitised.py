@@ -11,6 +11,7 @@ and get the error of a click: one pixel.
 
 from __future__ import annotations
 
+import codecs
 import io
 import math
 import tarfile
@@ -81,6 +82,7 @@ class Curve:
     bars: int
 
 
+_KEYS = (b'"axesColl"', b'"datasetColl"', b'"axesType"', b'"dataSeries"')
 _MOST_FILES = 1000
 """Files in an archive that are looked at."""
 
@@ -91,8 +93,10 @@ def is_archive(data: bytes) -> bool:
 
 
 def is_project(path: str | Path) -> bool:
-    """Whether a file is a project by its name or its bytes."""
-    return str(path).endswith(".json") or is_archive(read_bytes(path))
+    """Whether a file is a project, by the keys of one of its versions or as an archive."""
+    data = read_bytes(path)
+    json = data.lstrip().removeprefix(codecs.BOM_UTF8).lstrip()[:1] == b"{"
+    return is_archive(data) or (json and any(key in data for key in _KEYS))
 
 
 def curves(path: str | Path) -> list[Curve]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 from restitution.foreign import programs
-from restitution.foreign.file_text import text_of
+from restitution.foreign.file_text import lines_of, text_of
 from restitution.foreign.formats import arrays, blocks, workbook, zones
 from restitution.foreign.formats.spots import Read
 from restitution.foreign.programs import Program
+from restitution.inputs import read_bytes
 
 BLOCKS: tuple[tuple[Callable[[list[str]], bool], Callable[[list[str], str], Read], Program], ...] = (
     (blocks.is_lammps, blocks.lammps, programs.LAMMPS),
@@ -29,3 +31,8 @@ def text_in(data: bytes, file: str) -> str:
     if workbook.is_workbook(data):
         return workbook.text_of_sheet(data, file)
     return arrays.text_of_array(data, file) if arrays.is_array(data) else text_of(data, file)
+
+
+def read_lines(path: str | Path) -> list[str]:
+    """The lines of a table without their ends; raises :class:`InputError` where it is none."""
+    return lines_of(text_in(read_bytes(path), str(path)), str(path))

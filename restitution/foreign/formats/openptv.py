@@ -20,13 +20,16 @@ _MOST_FILES = 100_000
 
 
 def is_frame(path: str | Path) -> bool:
-    """Whether a file is that of one frame, by its name."""
-    return _NAME.fullmatch(Path(path).name) is not None
+    """Whether a file is that of one frame, by its name, or a folder has such files."""
+    if _NAME.fullmatch(Path(path).name):
+        return True
+    return Path(path).is_dir() and any(_NAME.fullmatch(file.name) for file in Path(path).iterdir())
 
 
 def trajectories(path: str | Path) -> Read:
     """Names and rows of all frames beside this one, the longest trajectory first."""
-    files = {int(m[2]): p for p in Path(path).parent.iterdir() if (m := _NAME.fullmatch(p.name))}
+    folder = Path(path) if Path(path).is_dir() else Path(path).parent
+    files = {int(m[2]): p for p in folder.iterdir() if (m := _NAME.fullmatch(p.name))}
     if len(files) > _MOST_FILES:
         raise InputError(
             Defect(f"has {len(files)} frames beside it; at most {_MOST_FILES} are read", file=str(path))

@@ -166,3 +166,21 @@ def test_a_height_against_time_is_a_track(tmp_path, archived):
     np.testing.assert_allclose(track.gap_m, np.array([*E, 0.6]) / 1e3)
     with pytest.raises(InputError, match=r"--time-unit.*--unit.*--point"):
         read_track(table, Settings(particle="brass"), None)
+
+
+def test_impacts_in_a_spreadsheet_and_tracks_in_markup_are_no_plots(tmp_path):
+    rows = [["stokes", "e_eff"], *zip(ST, E, strict=True)]
+    cells = "".join("<Row>" + "".join(f"<Cell><Data>{x}</Data></Cell>" for x in row) + "</Row>" for row in rows)
+    kind = 'xmlns="urn:schemas-microsoft-com:office:spreadsheet"'
+    impacts = exported(tmp_path, "impacts.xml", f"<Workbook {kind}><Table>{cells}</Table></Workbook>")
+    np.testing.assert_allclose(impacts.e, E)
+    (tmp_path / "track.xml").write_text(
+        '<Tracks><particle><detection t="0" x="1" y="2" z="0"/></particle></Tracks>'
+    )
+    with pytest.raises(InputError, match="is a track"):
+        read(tmp_path / "track.xml")
+
+
+def test_impacts_in_json(tmp_path):
+    impacts = exported(tmp_path, "impacts.json", {"stokes": list(ST), "e_eff": list(E)})
+    np.testing.assert_allclose(impacts.e, E)

@@ -66,6 +66,7 @@ NUL = b"\xef\xbb\xbf" + TRACK.encode().replace(b"0.0005", b"0.\0")
         (LATIN_1, 4, None, None, f"byte {LATIN_1.index(0xB5)} of the file is 0xb5"),
         (NUL, 5, None, None, f"NUL byte (byte {NUL.index(0)}"),
         (TRACK.encode("utf-16"), 1, None, None, "UTF-16"),
+        (b"PK\x03\x04" + bytes(200) + b"\n\xe6\n\0\n", None, None, None, "spreadsheet"),
         (TRACK + '0.004,"0.1\n', 6, None, None, "not CSV from here on"),
     ],
 )

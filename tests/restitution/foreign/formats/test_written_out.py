@@ -152,3 +152,8 @@ def test_json_that_is_no_table(tmp_path):
     (tmp_path / "track.json").write_text('{"a": {"b": 1}}')
     with pytest.raises(InputError, match="JSON, no table"):
         read_foreign(tmp_path / "track.json")
+
+
+def test_units_in_brackets_are_no_json(tmp_path):
+    (tmp_path / "track.csv").write_text("[s],[mm]\n" + "".join(f"{t},{y}\n" for t, y in ROWS))
+    assert len(read_foreign(tmp_path / "track.csv").rows) == len(ROWS)

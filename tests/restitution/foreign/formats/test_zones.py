@@ -69,6 +69,7 @@ def test_a_file_a_frame_of_openptv(tmp_path):
         rows = [f"-1 -2 40.0 {n}.5 1.0\n", ball] if n % 2 else [ball]
         (tmp_path / f"ptv_is.{10001 + n}").write_text(f"{len(rows)}\n" + "".join(rows))
     table = read_foreign(tmp_path / "ptv_is.10001")
+    assert read_foreign(tmp_path).rows == table.rows  # the folder of all frames
     assert list(table.particles().values()) == [5, 1, 1]
     found = seen(table, "1", position="y", frames_per_second=500.0)
     assert found == (pytest.approx([10001 / 500 + t for t in TIMES]), HEIGHTS)
