@@ -57,7 +57,7 @@ def read_long_track(path: str | Path, settings: Settings) -> ForeignTrack | None
 
 
 def _names_and_numbers(path: str | Path, settings: Settings) -> tuple[Quantity, list[str], bytes] | None:
-    if settings.stated() or len(data := read_bytes(path)) < LONG:
+    if settings.stated() or Path(path).is_dir() or len(data := read_bytes(path)) < LONG:
         return None
     heading, _, body = data.partition(b"\n")
     names = [name.strip() for name in heading.decode("latin-1").split(",")]

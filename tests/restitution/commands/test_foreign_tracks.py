@@ -146,3 +146,28 @@ def test_several_body_parts_need_one_more_try_alone(folder, flight, tmp_path):
     assert folder("impacts", "own.csv", "--out", "own_impacts.csv")[0] == 0
     own, pose = (pd.read_csv(tmp_path / name) for name in ("own_impacts.csv", "pose_impacts.csv"))
     np.testing.assert_allclose(pose["e_eff"], own["e_eff"], rtol=1e-3)
+
+
+def test_a_folder_of_frames_in_two_tries(folder, flight):
+    """OpenPTV has a file a frame: the first refusal names what the second try needs."""
+    for n, y in enumerate(flight[1]):
+        Path(f"ptv_is.{n + 1}").write_text(f"1\n{-1 if n == 0 else 0} 0 1.0 {1e3 * (y + RADIUS):.6f} 2.0\n")
+    status, _, error = folder("impacts", ".")
+    assert (status, [option in error for option in ("--column", "--fps", "--unit ")]) == (2, [True, True, False])
+    named = ["--column", "time_s=frame", "--column", "gap_m=y"]
+    assert folder("impacts", ".", *named, "--fps", "500", "--out", "found.csv")[0] == 0
+    assert folder("impacts", "own.csv", "--out", "own_impacts.csv")[0] == 0
+    found, own = pd.read_csv("found.csv"), pd.read_csv("own_impacts.csv")
+    np.testing.assert_allclose(found.e_eff, own.e_eff, rtol=0.005)
+
+
+def test_a_film_played_slowly_in_two_tries(folder, flight):
+    """Tracker counts the player's seconds: the camera's frames a second are asked for at once, and suffice."""
+    rows = [f"{i / 30:.6f}\t0.1\t{1e3 * (y + RADIUS):.6f}" for i, y in enumerate(flight[1])]
+    Path("tracker.txt").write_text("\n".join(["mass A\t\t", "t\tx\ty", *rows]) + "\n")
+    status, _, error = folder("impacts", "tracker.txt")
+    assert (status, all(option in error for option in ("--fps", "--unit", "--point"))) == (2, True)
+    stated = ["--fps", "500", "--unit", "mm", "--point", "centre"]
+    assert folder("impacts", "tracker.txt", *stated, "--out", "found.csv")[0] == 0
+    assert folder("impacts", "own.csv", "--out", "own_impacts.csv")[0] == 0
+    np.testing.assert_allclose(pd.read_csv("found.csv").e_eff, pd.read_csv("own_impacts.csv").e_eff, rtol=0.005)
