@@ -258,7 +258,8 @@ def _with_tracks(names: dict[int, str], above: list[list[str]]) -> dict[int, str
     """
     result = dict(names)
     for cells in reversed(above):
-        if len(set(result.values())) == len(result) or any(map(is_number, filter(None, cells))):
+        named = [name for name in result.values() if name]
+        if len(set(named)) == len(named) or any(map(is_number, filter(None, cells))):
             break
         track = ""
         for i, name in result.items():

@@ -160,7 +160,7 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
     file = str(path)
     if openptv.is_frame(path):
         return _of_blocks(file, openptv.trajectories(path), programs.OPENPTV)
-    if (data := read_bytes(path)).startswith(hdf5.MAGIC):
+    if hdf5.is_hdf5(data := read_bytes(path)):
         return _of_spots(file, hdf5.spots(data, file))
     if digitised.is_project(path):
         return _of_curves(path)

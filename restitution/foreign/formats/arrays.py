@@ -93,19 +93,25 @@ def _matlab(data: bytes, file: str) -> str:
         and value.dtype.kind in "iuf"
         and value.ndim == 2
     }
-    longest = max((max(value.shape) for value in arrays.values()), default=0)
-    names, columns = [], []
-    for name, value in arrays.items():
-        upright = _upright(value)
-        if len(upright) == longest and upright.shape[1] <= _WIDEST:
-            several = upright.shape[1] > 1
-            names += [f"{name}_{k + 1}" if several else name for k in range(upright.shape[1])]
-            columns += list(upright.T)
-    if longest < 2 or len(columns) < 2:
+    names, columns = side_by_side(arrays)
+    if len(columns) < 2:
         found = ", ".join(arrays) or "none"
         rule = f"is a workspace of MATLAB without two columns of one length; arrays of numbers in it: {found}"
         raise InputError(Defect(rule, file=file))
     return _text(names, np.column_stack(columns).tolist())
+
+
+def side_by_side(arrays: dict[str, np.ndarray]) -> tuple[list[str], list[np.ndarray]]:
+    """Names and columns of the arrays that are as long as the longest; of those of several columns, by number."""
+    longest = max((max(value.shape) for value in arrays.values()), default=0)
+    names, columns = list[str](), list[np.ndarray]()
+    for name, value in arrays.items():
+        upright = _upright(value)
+        if len(upright) == longest > 1 and upright.shape[1] <= _WIDEST:
+            several = upright.shape[1] > 1
+            names += [f"{name}_{k + 1}" if several else name for k in range(upright.shape[1])]
+            columns += list(upright.T)
+    return names, columns
 
 
 def _u_track(tracks: np.ndarray) -> str:

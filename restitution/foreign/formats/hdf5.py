@@ -2,7 +2,8 @@
 
 pandas keeps the names of the columns of a "table" as pickles, which are read here without anything that could be
 called; its "fixed" form has them as text. trackpy stores one such table a frame (PandasHDFStore) or one of all.
-SLEAP's ``tracks`` are (tracks, 2, nodes, frames), NaN where a node was not seen.
+SLEAP's ``tracks`` are (tracks, 2, nodes, frames), NaN where a node was not seen. Arrays of one length under names
+of their own are columns, as in workspaces of MATLAB 7.3.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import Defect, InputError
+from restitution.foreign.formats.arrays import side_by_side
 from restitution.foreign.formats.spots import Spots
 from restitution.foreign.layout import Row
 from restitution.foreign.programs import SLEAP, program_of
@@ -29,6 +31,7 @@ _MOST = 2**28
 """Bytes of an array, compared before any of it is read."""
 _SURE, _EASED = 2**22, 256
 """Bytes that are read whatever the file stores of them; beyond, so many times what it stores."""
+_MOST_ARRAYS = 100
 _MOST_NAMES = 2**16
 _TABLES = 2**17
 """Groups that are looked at: one a frame."""
@@ -36,6 +39,11 @@ _DAMAGED = (
     OSError, KeyError, ValueError, RuntimeError, TypeError, IndexError, AttributeError, EOFError, OverflowError,
     pickle.UnpicklingError, UnicodeError,
 )  # fmt: skip
+
+
+def is_hdf5(data: bytes) -> bool:
+    """Whether bytes are HDF5, perhaps behind the words with which MATLAB 7.3 begins."""
+    return data.startswith(MAGIC) or (data.startswith(b"MATLAB 7.3") and data[512:516] == MAGIC)
 
 
 def spots(data: bytes, file: str) -> Spots:
@@ -75,9 +83,23 @@ def _sleap(root: h5py.File) -> Spots:
     return Spots(names, rows, SLEAP)
 
 
+def _plain_arrays(root: h5py.File) -> dict[str, np.ndarray]:
+    """The arrays of numbers under names of their own, as MATLAB 7.3 and users write them."""
+    import h5py
+
+    found = {}
+    for name, item in list(root.items())[:_MOST_ARRAYS]:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "iuf" and item.ndim in (1, 2) and item.size:
+            found[name] = np.atleast_2d(_array(item))
+    return found
+
+
 def _pandas(root: h5py.File, file: str) -> Spots:
     """All tables of the same columns, one below the other."""
     tables = sorted(_tables(root), key=lambda pair: (len(pair[0]), pair[0]))
+    if not tables and len((columns := side_by_side(_plain_arrays(root)))[0]) > 1:
+        pairs = enumerate(np.column_stack(columns[1]).tolist(), 1)
+        return Spots(columns[0], [Row(n, list(map(_cell, values))) for n, values in pairs], None)
     if not tables:
         rule = "is HDF5 without a table of pandas or tracks of SLEAP; export the table as CSV"
         raise InputError(Defect(rule, file=file))

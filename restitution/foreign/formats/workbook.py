@@ -50,6 +50,8 @@ def text_of_sheet(data: bytes, file: str) -> str:
     best = max(sheets, key=lambda rows: sum(map(len, rows)), default=[])
     if not any(map(len, best)):
         raise InputError(Defect("is a spreadsheet without a table", file=file))
+    width = max(map(len, best))
+    best = [row + [""] * (width - len(row)) for row in best]
     return "\n".join("\t".join(re.sub(r"[\t\r\n]+", " ", cell) for cell in row) for row in best)
 
 

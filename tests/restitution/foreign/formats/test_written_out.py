@@ -4,6 +4,7 @@ import io
 import json
 import zipfile
 
+import h5py
 import numpy as np
 import pytest
 from scipy.io import savemat
@@ -89,6 +90,34 @@ def test_a_spreadsheet_that_is_none_is_one_line(tmp_path, data):
     with pytest.raises(InputError) as refused:
         read_foreign(tmp_path / "book.xlsx")
     assert len(refused.value.defects) == 1
+
+
+def test_a_table_of_a_laboratory_with_title_units_and_remarks(tmp_path):
+    def cell(place, text):
+        return f'<c r="{place}" t="inlineStr"><is><t>{text}</t></is></c>'
+
+    sheet = f'<row r="1">{cell("B1", "Drop 7, oil")}</row><row r="3">{cell("B3", "time")}{cell("C3", "height")}'
+    sheet += f'{cell("E3", "remark")}</row><row r="4">{cell("B4", "s")}{cell("C4", "mm")}</row>'
+    for n, (t, y) in enumerate(4 * ROWS, 5):
+        remark = cell(f"E{n}", "let go") if n == 5 else ""
+        sheet += f'<row r="{n}"><c r="B{n}"><v>{t}</v></c><c r="C{n}"><v>{y}</v></c>{remark}</row>'
+    (tmp_path / "book.xlsx").write_bytes(excel(sheet))
+    table = read_foreign(tmp_path / "book.xlsx")
+    assert table.header == ["time", "height", "remark"]
+    assert {"time": "s", "height": "mm"}.items() <= table.units.items()
+
+
+@pytest.mark.parametrize("words", [0, 512])
+def test_arrays_in_hdf5(tmp_path, words):
+    """MATLAB 7.3 keeps a row as a column and begins with words of its own."""
+    with h5py.File(tmp_path / "a.mat", "w", userblock_size=words) as file:
+        file["t"], file["y"], file["fps"] = [TIMES], [HEIGHTS], [[500.0]]
+    if words:
+        with (tmp_path / "a.mat").open("r+b") as file:
+            file.write(b"MATLAB 7.3 MAT-file")
+    table = read_foreign(tmp_path / "a.mat")
+    assert table.header == ["t", "y"]
+    assert [[float(cell) for cell in cells] for _, cells in table.rows] == [list(row) for row in ROWS]
 
 
 def test_cells_beyond_all_columns_are_left_out(tmp_path):
