@@ -63,6 +63,13 @@ class Emulated:
         mean = c.given.mean(axis=0)
         return float(1 - np.sum((c.rms / mean)[use] ** 2) / np.sum((c.given.std(axis=0) / mean)[use] ** 2))
 
+    @property
+    def widened(self) -> float:
+        """Times by which the emulator's error is widened: root mean square of its components, by variance."""
+        e = self.emulator
+        size = np.sum((e.components * self.registration.weight) ** 2, axis=1)
+        return float(np.sqrt(np.average([p.widened**2 for p in e.processes], weights=size)))
+
     def doubts(self) -> Iterator[Doubt]:
         """About the design and the emulator."""
         n, p = len(self.runs), len(self.emulator.names)

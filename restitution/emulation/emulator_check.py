@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.emulation.emulator import emulate, scale_of_design
+from restitution.emulation.emulator import emulate, folds, scale_of_design
 from restitution.emulation.registered import Registration
 
-FOLDS = 5
 _DRAWS = 400
 """From which the errors of quantities are taken."""
 
@@ -59,17 +58,14 @@ class Check:
 
 
 def check(names: Sequence[str], theta: NDArray, q: NDArray, r: Registration) -> Check:
-    """The check of an emulator of these runs; which runs belong together is drawn with a fixed seed."""
+    """The check of an emulator of these runs; that which is checked has the runs left out in nothing."""
     rng = np.random.default_rng(0)
-    order = rng.permutation(len(q))
     ranges = np.stack([theta.min(axis=0), theta.max(axis=0)], axis=1)
     scales = tuple(scale_of_design(x) for x in theta.T)
     given = r.quantities(q)
     predicted = {label: np.empty(len(q)) for label in given}
     sigma = {label: np.empty(len(q)) for label in given}
-    for fold in range(min(FOLDS, len(q))):
-        out = order[fold :: min(FOLDS, len(q))]
-        kept = np.setdiff1d(order, out)
+    for out, kept in folds(len(q)):
         emulator = emulate(names, theta[kept], q[kept], r.weight, ranges, scales)
         mean, variance = emulator.scores(theta[out])
         noise = rng.standard_normal((_DRAWS, *mean.shape))

@@ -52,6 +52,8 @@ class RecordFit(Record):
     """Part of the variance of runs it has not seen that the emulator predicts."""
     coverage: Annotated[FiniteFloat, Field(ge=0, le=1)]
     """Part of such runs within its 95 % intervals."""
+    widened: Annotated[FiniteFloat, Field(ge=1)] = 1.0
+    """Times by which its error is widened, for it is too small of itself."""
 
 
 class GroupFit(Record):
@@ -105,6 +107,7 @@ def _group(c: Calibration) -> GroupFit:
             name=e.name, held_out=p.held_out, runs=len(e.runs), frames=int(e.frames.use.sum()),
             flights=e.registration.flights, rms_before_d=p.rms_before_d, rms_after_d=p.rms_after_d,
             discrepancy_d=lacks.get(e.name), predicts=e.predicts, coverage=e.check.coverage,
+            widened=e.widened,
         )
         for e, p in zip((*c.used, *c.held_out), c.predictions, strict=True)
     )  # fmt: skip

@@ -1,7 +1,10 @@
 """Flights taken apart and put together again, and emulated, against flights in closed form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.stats import qmc
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, DotProduct, Matern, WhiteKernel
 
@@ -77,7 +80,7 @@ def test_its_numbers_are_scikit_learns(flights, registered):
     mean, sigma = other.predict(emulator.place(theta), return_std=True)
     own, variance = emulator.scores(theta)
     np.testing.assert_allclose(own[:, 0], mean, atol=1e-6)
-    np.testing.assert_allclose(variance[:, 0], sigma**2, rtol=1e-4, atol=1e-8)
+    np.testing.assert_allclose(variance[:, 0], (p.widened * sigma) ** 2, rtol=1e-4, atol=1e-8)
 
 
 def test_noise_is_not_predicted(registered):
@@ -91,3 +94,23 @@ def test_the_scale_is_the_one_the_design_is_even_on():
     assert scale_of_design(np.geomspace(1e-6, 5e-5, 20)) == "log"
     assert scale_of_design(np.linspace(1e-6, 5e-5, 20)) == "linear"
     assert scale_of_design(np.linspace(-1, 1, 20)) == "linear"
+
+
+def test_the_error_covers_runs_that_had_no_say():
+    """Functions drawn from a known process: sixteen runs hardly tell the numbers of its kernel."""
+    wide, bare = [], []
+    kernel, n = Matern([0.6, 2.0], nu=2.5) + WhiteKernel(1e-3), 16
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        x = np.concatenate([qmc.LatinHypercube(2, rng=rng).random(n), rng.random((40, 2))])
+        q = GaussianProcessRegressor(kernel, optimizer=None).sample_y(x, 3, random_state=seed)
+        ends = np.array([[0.0, 1.0]] * 2)
+        e = emulate(("x", "y"), x[:n], q[:n], np.ones(3), ends, ("linear", "linear"))
+        as_fitted = replace(e, processes=tuple(replace(p, widened=1.0) for p in e.processes))
+        w = np.linalg.lstsq(e.components.T, (q[n:] - e.mean).T, rcond=None)[0].T
+        for emulator, errors in ((e, wide), (as_fitted, bare)):
+            mean, variance = emulator.scores(x[n:])
+            errors.append((w - mean) / np.sqrt(variance))
+    within = [np.mean(np.abs(errors) < 1.96) for errors in (wide, bare)]
+    assert 0.9 < within[0] < 0.99
+    assert within[1] < 0.9
