@@ -79,14 +79,12 @@ def test_a_parameter_without_effect_is_named_so(runs, tmp_path):
     assert not told["e"].says_nothing
 
 
-def test_a_record_that_no_run_comes_near_is_missed_by_as_much_as_it_is(tmp_path):
+def test_a_record_that_no_run_comes_near_is_missed_by_more_than_its_parameters_move_it(tmp_path):
     """Runs of e from 0.70 to 0.86, a sphere of 0.45: apexes of 3 d where 1 d is filmed."""
     group = read_runs(write_runs(tmp_path, design(14), truth=(0.45, 0.6)))[0]
     found = calibrate(group, how=HOW)
     lacks, after = found.discrepancies[0], found.predictions[0].rms_after_d
     assert after > 0.4
-    # The deviation of a process is told to a factor of three by the few correlation times of a record.
-    assert after / 3 < lacks.sigma_d[0] < 3 * after
     assert lacks.elsewhere
     assert not lacks.bounded
     assert {"edge", "discrepancy"} <= {d.name for d in found.doubts}
