@@ -64,6 +64,18 @@ class Emulated:
         return float(1 - np.sum((c.rms / mean)[use] ** 2) / np.sum((c.given.std(axis=0) / mean)[use] ** 2))
 
     @property
+    def fails(self) -> str:
+        """That the emulator predicts too little, and which run it misses most: one may be in another unit."""
+        c = self.check
+        away = np.abs(c.given - c.predicted) / np.median(c.given, axis=0)
+        k, j = np.unravel_index(np.argmax(away), away.shape)
+        return (
+            f"the emulator predicts {max(self.predicts, 0.0):.0%} of the variance of runs it has not seen, of "
+            f"{len(self.runs)} runs; most it misses {self.runs[k].name}, {c.labels[j]}: {c.given[k, j]:.3g}, by "
+            f"the others {c.predicted[k, j]:.3g}. Is that one as the others are? Else more runs, or a narrower range"
+        )
+
+    @property
     def widened(self) -> float:
         """Times by which the emulator's error is widened: root mean square of its components, by variance."""
         e = self.emulator
@@ -77,11 +89,7 @@ class Emulated:
             rule = f"{n} runs vary {p} parameters: at least {RUNS_PER_PARAMETER} a parameter are needed to be sure"
             yield Doubt("few runs", rule, self.name)
         if self.predicts < PREDICTS:
-            rule = (
-                f"the emulator predicts {self.predicts:.0%} of the variance of runs it has not seen: more runs, "
-                "or a narrower range of the parameters"
-            )
-            yield Doubt("emulator", rule, self.name)
+            yield Doubt("emulator", self.fails, self.name)
         if self.check.coverage < COVERS:
             rule = (
                 f"{self.check.coverage:.0%} of unseen runs lie within the emulator's 95 % intervals: it takes "
@@ -137,11 +145,7 @@ def emulated(group: Runs, record: str, how: Reading) -> Emulated:
         r, runs, flights, registration, q, emulator, check(group.parameters, theta, q, registration), frames
     )
     if found.predicts < HARDLY:
-        rule = (
-            f"the emulator of {len(runs)} runs predicts {found.predicts:.0%} of the variance of runs it has not "
-            "seen: more runs, or a narrower range of the parameters"
-        )
-        raise InputError(Defect(rule, file=group.file, field="record", value=record))
+        raise InputError(Defect(found.fails, file=group.file, field="record", value=record))
     return found
 
 

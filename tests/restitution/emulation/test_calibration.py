@@ -105,6 +105,15 @@ def test_an_emulator_that_predicts_nothing_is_refused(runs, tmp_path):
         calibrate(read_runs(mixed)[0], how=HOW)
 
 
+def test_a_run_in_another_unit_is_named(runs, tmp_path):
+    path = runs.parent / "6.csv"
+    time, height = np.loadtxt(path, delimiter=",", skiprows=1).T
+    write_track(tmp_path / "other.csv", time, 1e3 * height)
+    other = {"track": str(tmp_path / "other.csv")}
+    with pytest.raises(InputError, match="most it misses r6, apex"):
+        calibrate(read_runs(altered(runs, tmp_path, lambda k, row: row | (other if k == 6 else {})))[0], how=HOW)
+
+
 def test_ranges_beyond_the_runs_and_unknown_names_are_refused(runs):
     group = read_runs(runs)[0]
     with pytest.raises(InputError, match="within the runs"):
