@@ -72,7 +72,7 @@ class Emulated:
         return (
             f"the emulator predicts {max(self.predicts, 0.0):.0%} of the variance of runs it has not seen, of "
             f"{len(self.runs)} runs; most it misses {self.runs[k].name}, {c.labels[j]}: {c.given[k, j]:.3g}, by "
-            f"the others {c.predicted[k, j]:.3g}. Is that one as the others are? Else more runs, or a narrower range"
+            f"the others {c.predicted[k, j]:.3g}. Is it as the others are? Else more runs, or a narrower range"
         )
 
     @property
