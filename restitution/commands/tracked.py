@@ -70,16 +70,19 @@ class Tracked:
         St = rows.impact_speed_m_s * convention("st").per_speed(self.conditions)
         e_dry = self.conditions.sphere.e_dry
         doubts = of_gain(list(rows.impact), rows.e_eff, rows.e_eff_sigma, e_dry, name)
-        if self.kind == "measured" and e_dry is not None:
-            # Of a record that is doubtful already an unusual K is likely a consequence.
-            sigma = None if found.doubts else rows.e_eff_sigma
-            doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True, sigma=sigma)
         doubts = [*found.doubts, *doubts]
+        # Where St or e is doubtful already an unusual K is a consequence, and its questions lead astray.
+        explained = any(doubt.name not in _OF_NEITHER for doubt in doubts)
+        if self.kind == "measured" and e_dry is not None and not explained:
+            sigma = None if doubts else rows.e_eff_sigma
+            doubts += of_impacts(St, rows.e_eff, e_dry, [name], computed=True, sigma=sigma)
         if _DOWN in self.reading:  # then it is the other way that mends it
             doubts = [replace(d, message=d.message.replace("--direction down", "--direction up")) for d in doubts]
         return replace(found, doubts=doubts)
 
 
+_OF_NEITHER = ("mistracked", "minimum", "centre", "hole")
+"""Doubts that leave St and e of the impacts as they are."""
 _DOWN = "growing towards the wall"
 """In the line that says how a track was read."""
 

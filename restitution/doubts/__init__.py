@@ -3,8 +3,8 @@
 Input that cannot be used is refused; input that can be used but contradicts what every such record obeys gives its
 result and a :class:`~.doubt.Doubt` that names the likely mistake. Read
 :mod:`.doubt`; :mod:`.mistracked` (frames that no flight passes through), :mod:`.clock` (frames repeated,
-renumbered, smoothed), :mod:`.filled` (made up), :mod:`.place` (the coordinate, the wall, holes),
-:mod:`.stated` (conditions by themselves);
+renumbered, smoothed), :mod:`.filled` (made up), :mod:`.pieces` (of two rates or two spheres),
+:mod:`.place` (the coordinate, the wall, holes), :mod:`.stated` (conditions by themselves);
 :mod:`.falls` (what the flights of a track say of gravity), :mod:`.pace` (clock, fluid and sphere by it),
 :mod:`.motion` (a track against its conditions), :mod:`.meeting` (whether both sides of a contact meet at the
 wall, and none in its image), :mod:`.record` (all of a record);

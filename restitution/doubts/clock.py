@@ -39,6 +39,11 @@ def of_frames(track: Track, level: float, diameter: float) -> list[Doubt]:
     return _repeated(track) or _renumbered(track) or _smoothed(track, level + H_FILM * diameter)
 
 
+def of_smoothed(track: Track, level: float, diameter: float) -> list[Doubt]:
+    """Whether contacts are rounded above the film, the wall being at ``level`` (m)."""
+    return _smoothed(track, level + H_FILM * diameter) if track.quantity == "gap" else []
+
+
 def _repeated(track: Track) -> list[Doubt]:
     """Equal neighbours where the sphere goes more than a step of the pixel grid in each frame."""
     value = track.value
@@ -86,7 +91,9 @@ def _renumbered(track: Track) -> list[Doubt]:
     i = np.arange(k, n - k)
     before, after = np.median(windows[i - k], axis=1), np.median(windows[i + 1], axis=1)
     # What gravity may add in the frames beside it, and what noise makes of medians of differences.
-    slack = GRAVITY * (k + 1) * dt[i] * dt[i] + _SURE * track.sigma
+    # Where the unit of length or time is wrong, gravity is so too.
+    bend = abs(float(np.median(value[2 * k :] - 2 * value[k:-k] + value[: -2 * k]))) / (k * np.median(dt)) ** 2
+    slack = max(GRAVITY, bend) * (k + 1) * dt[i] * dt[i] + _SURE * track.sigma
     way = np.maximum(np.abs(before), np.abs(after)) * dt[i]
     excess = np.abs(dy[i]) - way - slack
     same = before * after > 0
@@ -109,8 +116,8 @@ def _renumbered(track: Track) -> list[Doubt]:
 
 def _smoothed(track: Track, film: float) -> list[Doubt]:
     """Upward bends above the film that last longer than the frames beside a sudden contact."""
-    time, value = track.time_s, track.value
-    usual = float(np.median(np.diff(time)))
+    usual = float(np.median(np.diff(track.time_s)))
+    time, value = _filled_up(track, usual)
     even = bool(np.all(np.diff(time) < 1.5 * usual))
     stride = 1
     while even and 8 * stride < len(value) and stride <= 32:
@@ -134,6 +141,15 @@ def _smoothed(track: Track, film: float) -> list[Doubt]:
             ]
         stride *= 2
     return []
+
+
+def _filled_up(track: Track, usual: float) -> tuple[NDArray, NDArray]:
+    """Times and gaps with single missing frames, as mistracked ones leave, on the line between the others."""
+    time = track.time_s
+    step = np.diff(time)
+    alone = np.flatnonzero((step > 1.5 * usual) & (step < 2.5 * usual))
+    time = np.insert(time, alone + 1, time[alone] + step[alone] / 2)
+    return time, np.interp(time, track.time_s, track.value)
 
 
 def _longest(flags: NDArray) -> tuple[int, int]:

@@ -61,7 +61,7 @@ def of_gain(
         i = faster[0]
         message = (
             f"the sphere leaves impact {impact[i]} with {e[i]:.3g} of the speed it came with: does time run "
-            "backwards, or was the sphere lost about the contact?"
+            "backwards, or the frame rate change there, or was the sphere lost about the contact?"
         )
         return [Doubt("gain", message, where)]
     if len(above):

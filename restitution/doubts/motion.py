@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from restitution.doubts import falls
-from restitution.doubts.clock import of_frames
+from restitution.doubts.clock import of_frames, of_smoothed
 from restitution.doubts.doubt import Doubt
 from restitution.doubts.filled import of_filled
 from restitution.doubts.meeting import of_mirrored
 from restitution.doubts.pace import FAST, SLOW, of_pace
-from restitution.doubts.place import below, half_as_large, holes, still
+from restitution.doubts.pieces import of_pieces
+from restitution.doubts.place import below, half_as_large, holes, still, unsigned
 from restitution.doubts.stated import of_diameter, of_fluid, of_size
 from restitution.tracks import Contacts, Track, contacts
 
@@ -31,7 +32,10 @@ CENTRE_D = 0.2
 def of_track(track: Track, found: Contacts, conditions: Conditions, where: str = "") -> list[Doubt]:
     """Everything doubtful about a track under its conditions; ``found`` are its contacts."""
     doubts = of_fluid(conditions) + (
-        still(track) or _direction(track, found, conditions) or _of_motion(track, found, conditions)
+        still(track)
+        or unsigned(track)
+        or _direction(track, found, conditions)
+        or _of_motion(track, found, conditions)
     )
     return [replace(doubt, where=where) for doubt in doubts]
 
@@ -45,7 +49,14 @@ def _of_motion(track: Track, found: Contacts, conditions: Conditions) -> list[Do
         *(hole.doubt(track) for hole in holes(track, found, conditions)),
     ]
     broken = bool(doubts)
-    doubts += (of_frames(track, level, d) or of_filled(track)) if not broken else []
+    if not broken:
+        doubts += of_frames(track, level, d) or of_filled(track)
+    elif all(doubt.name == "minimum" for doubt in doubts):  # which a smoothed contact leaves beside it
+        doubts = of_smoothed(track, level, d) or doubts
+    if all(doubt.name == "minimum" for doubt in doubts) and (
+        pieces := of_pieces(track, level, d, abs(conditions.free_fall))
+    ):
+        return pieces  # no speed between two pieces is one of a sphere
     doubts += [] if of_diameter(conditions) else below(track, found, d)
     # Frames at wrong times tell no acceleration, and an approach that is not whole no fall.
     if any(doubt.name in ("repeated", "renumbered") for doubt in doubts) or of_fluid(conditions):
@@ -79,7 +90,7 @@ def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Do
             "fallen does: "
             "--direction down --wall rest"
         )
-        return [Doubt("direction", message)]
+        return [Doubt("direction", message), *_pace_of(over, other, conditions)]
     # A contact that is taken for an apex turns much faster than gravity does.
     turned = [sum(SLOW * g < fall.acceleration < FAST * g for fall in some) for some in (here, there)]
     over_there = turned[1] > turned[0] or (upside > falling and turned[1] == turned[0])
@@ -89,8 +100,13 @@ def _direction(track: Track, found: Contacts, conditions: Conditions) -> list[Do
             "fallen or of rows of an "
             "image do: --direction down --wall X"
         )
-        return [Doubt("direction", message)]
+        return [Doubt("direction", message), *_pace_of(over, other, conditions)]
     return []
+
+
+def _pace_of(over: Track, found: Contacts, conditions: Conditions) -> list[Doubt]:
+    """The clock of a record that was turned over."""
+    return [doubt for doubt in of_pace(over, found, conditions, False) if doubt.name == "clock"]
 
 
 def _typical_slope(track: Track) -> float:
@@ -115,7 +131,8 @@ def _hovering(track: Track, found: Contacts, conditions: Conditions) -> list[Dou
         Doubt(
             "minimum",
             f"the minimum at t = {track.time_s[i]:.6g} s lies {track.value[i] - wall:.2g} m above the wall, "
-            f"{(track.value[i] - wall) / d:.2g} d: it is no contact and was left out (was the sphere lost there?)",
+            f"{(track.value[i] - wall) / d:.2g} d: it is no contact and was left out (was the sphere lost there, "
+            "or the track smoothed?)",
         )
         for i in found.hovering
         if min(np.max(value[:i], initial=value[i]), np.max(value[i:])) - value[i] > depth
@@ -135,7 +152,14 @@ def _centre(track: Track, found: Contacts, d: float) -> list[Doubt]:
     if track.quantity != "gap" or not lowest > CENTRE_D * d or not _seen(track, found):
         return []
     if _CENTRES[0] < lowest / d < _CENTRES[1]:
-        question = "is it the height of the centre? It must be that of the lowest point (--point centre)"
+        question = (
+            "is it the height of the centre (--point centre), or, where that is given, of the top, d/2 above it "
+            "(--point lowest --wall X, the top of the sphere at rest)?"
+        )
+    elif abs(lowest / d - 1) < _ALIKE_D:
+        question = (
+            "is it the height of the top of the sphere, or the wall so much higher (--wall, or --wall rest)?"
+        )
     else:
         question = "is the wall so much higher than stated (--wall, or --wall rest)?"
     return [Doubt("centre", f"the gap never falls below {lowest:.3g} m, {lowest / d:.2g} d: {question}")]
@@ -154,3 +178,5 @@ _HIDDEN = 4.0
 """Usual times between frames for which a sphere is behind an edge at least."""
 _CENTRES = (0.4, 0.6)
 """Diameters about the radius."""
+_ALIKE_D = 0.05
+"""About the diameter."""

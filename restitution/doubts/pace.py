@@ -49,7 +49,7 @@ def of_pace(track: Track, found: Contacts, conditions: Conditions, whole: bool) 
         nothing = not found.contacts and share < _NOTHING_FALLS
         return [_lighter(share * g, conditions) if lighter else _clock(share, g, conditions, nothing)]
     if fast > BEYOND * terminal:
-        return [_lighter(0.0, conditions) if lighter else _too_fast(fast, terminal, conditions)]
+        return [_lighter(0.0, conditions) if lighter else _too_fast(fast, terminal, conditions, turning)]
     if coming is not None and coming.mean_speed < 0.5 * terminal:
         expected = g * (1 - coming.mean_speed / terminal)
         if coming.error < 0.2 * expected and coming.acceleration < 0.2 * expected:
@@ -186,10 +186,12 @@ def _lighter(acceleration: float, conditions: Conditions) -> Doubt:
     )
 
 
-def _too_fast(fast: float, terminal: float, conditions: Conditions) -> Doubt:
+def _too_fast(fast: float, terminal: float, conditions: Conditions, turning: list[falls.Fall]) -> Doubt:
     """Of the mistakes that explain the speed, the smallest one."""
     fluid, sphere = conditions.fluid, conditions.sphere
-    mistakes = [(replace_in(conditions, diameter=2), f"is the diameter, {sphere.diameter:g} m, the radius?")]
+    solid = _heavier(turning, conditions)
+    mistakes = [] if solid is None else [solid]
+    mistakes += [(replace_in(conditions, diameter=2), f"is the diameter, {sphere.diameter:g} m, the radius?")]
     if 1e-3 * fluid.viscosity > _THINNEST:
         words = (
             f'is the viscosity, {fluid.viscosity:g} Pa s, in mPa s (cP)? viscosity = "{fluid.viscosity:g} mPa s"'
@@ -201,12 +203,45 @@ def _too_fast(fast: float, terminal: float, conditions: Conditions) -> Doubt:
     thin = _viscosity(fast, conditions)
     if thin and len(likely) < 2 and not any("viscosity" in question for question in likely):
         likely.append(f"{'or ' if likely else ''}is the viscosity, {fluid.viscosity:g} Pa s, {thin:.1g} at most?")
+    if not likely:
+        likely = [
+            f"is the diameter, {sphere.diameter:g} m, {factor:g} times as large ({unit})?"
+            for factor, unit in _UNITS
+            if fast < 1.1 * _terminal(replace_in(conditions, diameter=factor))
+        ]
     question = " ".join(likely[:2]) or _ALL_ASKED
     return Doubt(
         "speed",
         f"the sphere moves at {fast:.3g} m/s, {fast / terminal:.2g} times its terminal speed under these "
         "conditions "
         f"({terminal:.2g} m/s): {question}",
+    )
+
+
+_UNITS = ((10.0, "cm taken for mm"), (25.4, "inch taken for mm"))
+"""Units of a diameter that are taken for one another."""
+
+
+def _heavier(turning: list[falls.Fall], conditions: Conditions) -> tuple[Conditions, str] | None:
+    """The conditions with the density of the sphere that all apexes tell, and the question, where that is surely
+    greater than the stated one.
+    """
+    g = abs(conditions.free_fall)
+    mean, error = _mean(turning, g) if turning else (1.0, math.inf)
+    if not mean - 3 * error > MOST or not mean * g < conditions.gravity:
+        return None
+    own = conditions.sphere
+    solid = _density(mean * g, conditions)
+    low, high = (
+        _density(min(x, 0.999 * conditions.gravity / g) * g, conditions) for x in (mean - error, mean + error)
+    )
+    if not own.density < solid < HEAVIEST:
+        return None
+    other = conditions.model_copy(update={"sphere": own.model_copy(update={"density": solid})})
+    within = f"{low:.2g} to {min(high, HEAVIEST):.2g}"
+    return (
+        other,
+        f"is the sphere heavier than {own.density:g} kg/m3 (after a contact it falls as one of {within})?",
     )
 
 

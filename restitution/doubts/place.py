@@ -46,6 +46,24 @@ def still(track: Track) -> list[Doubt]:
     return []
 
 
+def unsigned(track: Track) -> list[Doubt]:
+    """Velocities of one sign that vanish between two flights, as speeds do about an apex."""
+    value, noise = track.value, 5 * track.sigma
+    v = np.abs(value)
+    one_sign = np.min(value) > -noise or np.max(value) < noise
+    if track.quantity != "velocity" or not one_sign or not np.max(v) > 4 * noise:
+        return []
+    before, after = np.maximum.accumulate(v), np.maximum.accumulate(v[::-1])[::-1]
+    slow = v < np.minimum(np.minimum(before, after) / 10, np.max(v) / 10)
+    if not np.any(slow & (np.minimum(before, after) > np.maximum(np.max(v) / 5, 2 * noise))):
+        return []
+    message = (
+        "the velocities vanish between flights and never change sign: are they speeds, |v|? Those towards the "
+        "wall and away from it need different signs; or give the positions (--column gap_m=NAME)"
+    )
+    return [Doubt("unsigned", message)]
+
+
 def below(track: Track, found: Contacts, diameter: float) -> list[Doubt]:
     """Contacts far within the wall."""
     lows = [track.value[c.nearest] for c in found.contacts if c.nearest is not None]
@@ -55,7 +73,9 @@ def below(track: Track, found: Contacts, diameter: float) -> list[Doubt]:
     if not deep < -OVERLAP_D * diameter - DETECTION * track.sigma:
         return []
     other = "are these heights of the centre above another level?"
-    if abs(deep / diameter + 0.5) < _HALF_D:
+    if deep < -_OTHER_UNIT * diameter:
+        other = "is its place not in the unit of the positions, as --wall is meant?"
+    elif abs(deep / diameter + 0.5) < _HALF_D:
         other = "are these heights of the lowest point (--point lowest)?"
     elif abs(deep / diameter + 0.25) < _HALF_D / 2:
         other = f"is the diameter {diameter / 2:.3g} m?"
@@ -69,6 +89,8 @@ def below(track: Track, found: Contacts, diameter: float) -> list[Doubt]:
     ]
 
 
+_OTHER_UNIT = 2.0
+"""Diameters from which on a wall is hardly at a place that was read wrongly."""
 _HALF_D = 0.04
 """Diameters by which frames beside a contact are away from it."""
 

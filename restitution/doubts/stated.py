@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 DENSE, THIN = 500.0, 5e-5
 """Density in kg/m3 of what is a liquid, and viscosity in Pa s below which no such liquid is: carbon dioxide at
 20 C has 7e-5 at 770 kg/m3, pentane 2e-4, water 1e-3. Kinematic viscosities, in m2/s, are mostly below."""
+HEAVY, THIN_AND_HEAVY = 900.0, 1.5e-4
+"""The same of heavier liquids: liquid oxygen has 1.9e-4 at 1140 kg/m3, argon 2.6e-4, carbon disulphide 3.6e-4."""
 THINNEST = 2e-6
 """Viscosity in Pa s below that of any fluid that spheres are dropped in: liquid helium has 3e-6, gases 1e-5."""
 LARGEST = 0.2
@@ -70,10 +72,16 @@ def of_densities(conditions: Conditions) -> list[Doubt]:
 
 
 def of_fluid(conditions: Conditions) -> list[Doubt]:
-    """A kinematic viscosity stated as the dynamic one."""
+    """A kinematic viscosity stated as the dynamic one, or less than any liquid has."""
     fluid = conditions.fluid
     if fluid.viscosity >= (THIN if fluid.density > DENSE else THINNEST):
-        return []
+        if fluid.density < HEAVY or fluid.viscosity >= THIN_AND_HEAVY:
+            return []
+        message = (
+            f"no liquid of {fluid.density:g} kg/m3 has a viscosity as low as {fluid.viscosity:g} Pa s (water has "
+            "0.001): is it a tenth of what is meant?"
+        )
+        return [Doubt("viscosity", message)]
     nu = fluid.viscosity * 1e6
     return [
         Doubt(

@@ -171,3 +171,28 @@ def test_a_film_played_slowly_in_two_tries(folder, flight):
     assert folder("impacts", "tracker.txt", *stated, "--out", "found.csv")[0] == 0
     assert folder("impacts", "own.csv", "--out", "own_impacts.csv")[0] == 0
     np.testing.assert_allclose(pd.read_csv("found.csv").e_eff, pd.read_csv("own_impacts.csv").e_eff, rtol=0.005)
+
+
+@pytest.mark.parametrize(
+    ("stated", "wrong", "named"),
+    [
+        ("10 mPa s", "10 Pa s", "viscosity"),
+        ("7.8 g/cm3", "2.5 g/cm3", "density"),
+        ("3 mm", "1.5 mm", "radius"),
+    ],
+)
+def test_one_wrong_condition_is_one_doubt(folder, stated, wrong, named):
+    """The K that follows from it is no second one, which would ask about what is right."""
+    Path("conditions.toml").write_text(CONDITIONS.replace(stated, wrong))
+    status, out, err = folder("impacts", "own.csv")
+    (doubt,) = [line for line in (out + err).splitlines() if line.startswith("doubt:")]
+    assert status == 0
+    assert named in doubt
+
+
+def test_an_unusual_k_alone_is_a_doubt(folder):
+    """Water in place of the oil: nothing but what the film takes contradicts it."""
+    Path("conditions.toml").write_text(CONDITIONS.replace("10 mPa s", "0.5 mPa s"))
+    _, out, err = folder("impacts", "own.csv")
+    (doubt,) = [line for line in (out + err).splitlines() if line.startswith("doubt:")]
+    assert "K = " in doubt

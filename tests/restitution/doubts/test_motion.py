@@ -231,6 +231,45 @@ def test_a_wrong_solid_or_liquid_is_named_as_such():
             assert (light.name, "rises" in light.message) == ("lighter", True)
 
 
+@pytest.mark.parametrize("times", [10.0, 25.4])
+def test_a_diameter_in_centimetres_or_inches_is_named(times):
+    for seed in range(4):
+        track, c = dropped(seed, noise=1e-5)
+        (doubt,) = (d for d in doubts(track, changed(c, sphere={"diameter": 1 / times})) if d.name == "speed")
+        assert f"{times:g} times as large" in doubt.message
+
+
+def test_a_dense_sphere_taken_for_steel_is_named():
+    """Tungsten carbide of 5 mm in 50 mPa s: free fall hardly tells it, what it is faster than steel falls does."""
+    c = Conditions.model_validate(
+        {
+            "fluid": {"density": 963, "viscosity": 0.05},
+            "sphere": {"diameter": 5e-3, "density": 14900, "e_dry": 0.93},
+        }
+    )
+    for seed in range(4):
+        rng = np.random.default_rng([96, seed])
+        flights, _ = fly(0.07, 0.0, (0.75, 0.64, 0.48), steady_fall(c), c.free_fall)
+        times = np.arange(rng.uniform(0, 5e-4), flights[-1].end, 5e-4)
+        track = as_track(times, film(flights, times)[0] + 1e-5 * rng.standard_normal(len(times)))
+        assert doubts(track, c) == []
+        (doubt,) = doubts(track, changed(c, sphere={"density": 7800 / 14900}))
+        assert doubt.name == "speed"
+        low, high = (
+            float(x.strip("?) ")) for x in doubt.message.split("as one of ")[1].split(")")[0].split(" to ")
+        )
+        assert 9000 < low < 14900 * 1.1
+        assert high > 14900 * 0.9
+
+
+def test_an_upside_down_record_on_a_players_clock_is_told_both():
+    for seed in range(4):
+        track, c = dropped(seed)
+        rest = 2e-5 * np.random.default_rng(seed).standard_normal(80)
+        fallen = 0.03 - np.r_[track.value, rest]
+        assert names(as_track(np.arange(len(fallen)) / 30, fallen), c) == ["direction", "clock"]
+
+
 def test_a_sphere_that_rises_to_a_ceiling_is_not_doubted():
     """Lighter than the liquid, the gap counted from the ceiling: it falls upwards, by the same equation."""
     c = changed(STEEL_IN_OIL, sphere={"density": 50 / 7800})

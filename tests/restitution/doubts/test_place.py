@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from restitution.doubts import holes, of_track
-from restitution.doubts.place import below, still
+from restitution.doubts.place import below, still, unsigned
 from restitution.impacts import find_impacts
 from restitution.tracks import contacts
 from tests.flights import STEEL_IN_OIL, as_track, random_track
@@ -79,3 +79,33 @@ def test_a_hole_about_one_contact_or_within_a_flight_is_none():
             keep = np.setdiff1d(np.arange(len(gap)), np.arange(begin, end))
             track = as_track(times[keep], gap[keep])
             assert holes(track, contacts(track), STEEL_IN_OIL) == []
+
+
+def speeds(seed, rng):
+    """Velocities of a fall and its rebounds, at 1 kHz with 4 mm/s of noise."""
+    track, _ = random_track(np.random.default_rng(seed), "velocity")
+    return track, 4e-3 * rng.standard_normal(len(track.value))
+
+
+def test_speeds_without_their_sign_are_named_and_velocities_are_not():
+    rng = np.random.default_rng(3)
+    for seed in range(12):
+        track, noise = speeds(seed, rng)
+        assert unsigned(as_track(track.time_s, track.value + noise, "velocity")) == []
+        for sign in (1, -1):
+            alone = as_track(track.time_s, sign * np.abs(track.value + noise), "velocity")
+            (doubt,) = of_track(alone, contacts(alone), STEEL_IN_OIL)
+            assert doubt.name == "unsigned"
+
+
+def test_a_fall_that_sticks_has_velocities_of_one_sign():
+    t = np.arange(0, 0.2, 1e-3)
+    v = np.where(t < 0.05, -8 * t, 0.0) + 2e-3 * np.random.default_rng(5).standard_normal(len(t))
+    assert unsigned(as_track(t, v, "velocity")) == []
+
+
+def test_a_wall_in_another_unit_than_the_positions_is_asked_for():
+    track = track_of(1)
+    shifted = replace(track, value=track.value - 15 * D)
+    (doubt,) = below(shifted, replace(contacts(track), level=None), D)
+    assert "unit" in doubt.message

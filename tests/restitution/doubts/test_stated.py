@@ -59,6 +59,7 @@ def test_a_diameter_in_millimetres_is_named():
         (conditions(935.0, 0.01, solid=7.8), "density", "g/cm3"),
         (conditions(935.0, 0.01, solid=7.8e6), "density", "kg/m3"),
         (conditions(998.0, 1e-6), "viscosity", "cSt"),
+        (conditions(998.0, 1e-4), "viscosity", "a tenth"),
     ],
 )
 def test_numbers_without_their_unit_are_named_where_no_motion_is_known(stated, named, hint):
@@ -71,6 +72,12 @@ def test_shipped_records_cases_and_pairs_are_not_doubted():
     known = [datasets.resource(name).conditions for name in datasets.names()]
     known += [read_case(name).conditions for name in names()] + [c.conditions for c in candidates()]
     assert of_conditions(known) == []
+
+
+@pytest.mark.parametrize(("density", "viscosity"), [(770, 7e-5), (1141, 1.9e-4), (626, 2.2e-4), (1.2, 1.8e-5)])
+def test_the_thinnest_liquids_and_gases_are_not_doubted(density, viscosity):
+    """Carbon dioxide at 20 C, liquid oxygen, pentane, air."""
+    assert of_conditions([conditions(density, viscosity)]) == []
 
 
 def test_a_speed_that_nothing_falls_with_is_doubted():
