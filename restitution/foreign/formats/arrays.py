@@ -7,6 +7,7 @@ are taken the arrays as long as the longest; tracks of u-track (``tracksFinal``)
 from __future__ import annotations
 
 import io
+import tokenize
 import zlib
 from collections.abc import Sequence
 from typing import Any
@@ -59,7 +60,7 @@ def _text(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
 def _numpy(data: bytes, file: str) -> str:
     try:
         array = np.load(io.BytesIO(data), allow_pickle=False)
-    except (ValueError, OSError, EOFError):
+    except (ValueError, OSError, EOFError, SyntaxError, tokenize.TokenError, MemoryError):
         raise InputError(Defect("is no array of NumPy that holds numbers alone", file=file)) from None
     if array.dtype.names and array.ndim == 1:
         return _text(array.dtype.names, array.tolist())

@@ -19,6 +19,9 @@ from restitution.inputs import MOST_TABLE
 ZIP = b"PK\x03\x04"
 _SHARED = "xl/sharedStrings.xml"
 _SHEETS = re.compile(r"xl/worksheets/[^/]+\.xml|content\.xml")
+_DAMAGED = (
+    zipfile.BadZipFile, zlib.error, expat.ExpatError, OSError, EOFError, RuntimeError, ValueError, LookupError,
+)  # fmt: skip
 _WIDEST = 1000
 """Columns of a sheet that are read; LibreOffice fills rows to their end with empty ones."""
 _REFERENCE = re.compile(r"([A-Z]{1,3})\d+")
@@ -35,15 +38,9 @@ def text_of_sheet(data: bytes, file: str) -> str:
     """The sheet with the most cells, as text; raises :class:`InputError` where none can be read."""
     try:
         sheets = list(_sheets(data, file))
-    except (
-        zipfile.BadZipFile,
-        OSError,
-        EOFError,
-        zlib.error,
-        RuntimeError,
-        NotImplementedError,
-        expat.ExpatError,
-    ):
+    except InputError:
+        raise
+    except _DAMAGED:
         raise InputError(
             Defect("is a spreadsheet that cannot be read; save the table as CSV", file=file)
         ) from None
@@ -58,7 +55,7 @@ def text_of_sheet(data: bytes, file: str) -> str:
 def _names(data: bytes) -> list[str]:
     try:
         return zipfile.ZipFile(io.BytesIO(data)).namelist()
-    except (zipfile.BadZipFile, OSError, ValueError):
+    except _DAMAGED:
         return []
 
 

@@ -115,7 +115,7 @@ def labview(lines: Sequence[str], file: str) -> Read:
         elif below and names and len(cells) > 1:
             values = cells[: len(names)]
             if not values[0]:
-                start, step = (float(tags[key][0].replace(",", ".")) for key in ("X0", "Delta_X"))
+                start, step = (_stated(tags, key, file) for key in ("X0", "Delta_X"))
                 values[0] = f"{start + step * len(rows):.12g}"
             rows.append(Row(number, values))
         elif cells and cells[0]:
@@ -124,4 +124,12 @@ def labview(lines: Sequence[str], file: str) -> Read:
         raise InputError(Defect("is a measurement of LabVIEW without values", file=file))
     labels = tags.get("Y_Unit_Label", [])
     units = {name: unit_of(label) for name, label in zip(names[1:], labels, strict=False) if label}
-    return names, rows, units | ({names[0]: "s"} if tags.get("X_Dimension", ["Time"])[0] == "Time" else {})
+    return names, rows, units | ({names[0]: "s"} if (tags.get("X_Dimension") or ["Time"])[0] == "Time" else {})
+
+
+def _stated(tags: dict[str, list[str]], key: str, file: str) -> float:
+    """A number of the head of a measurement."""
+    text = (tags.get(key) or [""])[0].replace(",", ".")
+    if not is_number(text):
+        raise InputError(Defect("is no number, and there is no column of times", file=file, field=key, value=text))
+    return float(text)

@@ -1,5 +1,6 @@
 """What is written out as text before it is read: spreadsheets of three kinds, arrays of NumPy, MATLAB and JSON."""
 
+import contextlib
 import io
 import json
 import zipfile
@@ -186,3 +187,22 @@ def test_json_that_is_no_table(tmp_path):
 def test_units_in_brackets_are_no_json(tmp_path):
     (tmp_path / "track.csv").write_text("[s],[mm]\n" + "".join(f"{t},{y}\n" for t, y in ROWS))
     assert len(read_foreign(tmp_path / "track.csv").rows) == len(ROWS)
+
+
+@pytest.mark.parametrize("write", [excel, libre_office, kinovea])
+def test_damage_is_an_error_of_the_input(tmp_path, write):
+    """A piece taken out anywhere: a table, or one that cannot be read, no other error."""
+    data = write()
+    for at in range(0, len(data) - 20, max(len(data) // 60, 1)):
+        (tmp_path / "book").write_bytes(data[:at] + data[at + 11 :])
+        with contextlib.suppress(InputError):
+            read_foreign(tmp_path / "book")
+
+
+def test_a_damaged_array_is_an_error_of_the_input(tmp_path):
+    np.save(tmp_path / "a.npy", np.array(ROWS))
+    data = (tmp_path / "a.npy").read_bytes()
+    for at in range(6, 100):
+        (tmp_path / "a.npy").write_bytes(data[:at] + b"(" + data[at + 1 :])
+        with contextlib.suppress(InputError):
+            read_foreign(tmp_path / "a.npy")

@@ -86,3 +86,10 @@ def test_tracks_of_icy(tmp_path):
     text = f'<root><trackfile version="1"/><trackgroup><track id="7">{spots}</track></trackgroup></root>'
     table = written(tmp_path, text, "icy.xml")
     assert seen(table, frames_per_second=500.0, pixel="0.1 mm", wall=100.0) == (TIMES, HEIGHTS)
+
+
+def test_a_measurement_of_labview_that_states_no_step(tmp_path):
+    text = "LabVIEW Measurement\t\n***End_of_Header***\t\nChannels\t1\n***End_of_Header***\t\n"
+    text += "X_Value\tHeight\n\t5.0\n"
+    with pytest.raises(InputError, match="X0"):
+        written(tmp_path, text)
