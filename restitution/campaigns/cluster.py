@@ -12,6 +12,7 @@ from __future__ import annotations
 import difflib
 import inspect
 import logging
+import shutil
 import signal
 import threading
 import time
@@ -66,10 +67,14 @@ def dask_engine(scheduler: str, say: Callable[[str], None] = lambda _: None) -> 
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # what is wrong is said by the driver, in a line
     if scheduler.startswith(SLURM):
         with slurm_cluster(scheduler.removeprefix(SLURM)) as (cluster, jobs):
+            if shutil.which("sbatch") is None:  # dask-jobqueue would only log that, and wait
+                rule = "there is no sbatch here: give the command where jobs are submitted (--dry-run needs none)"
+                raise InputError(Defect(rule, field="--scheduler", value=scheduler))
             cluster.scale(jobs=jobs)
             with Client(cluster) as client:
                 told = f"{jobs} jobs of SLURM, scheduler at {cluster.scheduler_address}"
-                yield _engine(client, told, Renewal(cluster, jobs))
+                none = "no job of SLURM has a worker here: do they wait, or were they refused ('squeue --me')?"
+                yield _engine(client, told, Renewal(cluster, jobs), _Watch(client, none, say))
         return
     try:
         client = Client(scheduler, timeout=_SECONDS_TO_ANSWER)
@@ -81,7 +86,8 @@ def dask_engine(scheduler: str, say: Callable[[str], None] = lambda _: None) -> 
         told = f"{len(workers)} worker{'s' if len(workers) != 1 else ''} at {scheduler}"
         if any(w["nthreads"] > 1 for w in workers):
             told += "; runs share a process where a worker has several threads: start it with --nthreads 1"
-        yield _engine(client, told, _Watch(client, scheduler, say))
+        none = f"no worker at {scheduler}: start one (dask worker {scheduler} --nthreads 1), or stop by Ctrl-C"
+        yield _engine(client, told, _Watch(client, none, say))
     finally:
         with suppress(OSError, TimeoutError):
             client.close(timeout=2)
@@ -159,8 +165,8 @@ class Renewal:
 class _Watch:
     """Says that runs wait for want of workers, which would look like runs that take long."""
 
-    def __init__(self, client: Client, scheduler: str, say: Callable[[str], None]):
-        self.client, self.scheduler, self.say = client, scheduler, say
+    def __init__(self, client: Client, none: str, say: Callable[[str], None]):
+        self.client, self.none, self.say = client, none, say
         self._since: float | None = None
         self._said = False
 
@@ -173,13 +179,10 @@ class _Watch:
         self._since = self._since or time.monotonic()
         if not self._said and time.monotonic() - self._since > _SECONDS_WITHOUT:
             self._said = True
-            self.say(
-                f"no worker at {self.scheduler}: the runs wait for one (dask worker {self.scheduler} --nthreads "
-                "1), or stop here by Ctrl-C"
-            )
+            self.say(f"runs wait: {self.none}")
 
 
-def _engine(client: Client, told: str, renew: Callable[[], None] = lambda: None) -> Engine:
+def _engine(client: Client, told: str, *looks: Callable[[], None]) -> Engine:
     address = client.scheduler.address if client.scheduler is not None else "its address"
 
     def at_once() -> int:
@@ -189,7 +192,8 @@ def _engine(client: Client, told: str, renew: Callable[[], None] = lambda: None)
 
     def lost() -> str | None:
         if client.status == "running":
-            renew()
+            for look in looks:
+                look()
             return None
         return (
             f"the scheduler at {address} is gone: what is finished is kept; start it again and give the same "

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import shutil
 import signal
 import time
 
@@ -136,6 +137,10 @@ def test_the_script_of_a_job_has_what_the_file_says(tmp_path):
     for line in ("#SBATCH -p long", "#SBATCH -A flow", "#SBATCH --cpus-per-task=4", "#SBATCH -t 02:00:00"):
         assert line in script.splitlines()
     assert "--nthreads 1" in script
+    if shutil.which("sbatch") is None:
+        done = sweeps.run(sweeps.tiny(tmp_path), "--out", tmp_path / "out", "--scheduler", f"slurm:{slurm}")
+        assert done.returncode == 2
+        assert "there is no sbatch here" in done.stderr
     interrupt = signal.getsignal(signal.SIGINT)
     assert {"queue", "account", "walltime", "cores", "memory", "processes", "worker_extra_args"} <= keywords()
     assert signal.getsignal(signal.SIGINT) is interrupt
