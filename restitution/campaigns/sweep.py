@@ -89,7 +89,7 @@ def _drive(
     say: Callable[[str], None],
 ) -> Manifest:
     write_plan(folder, runs)
-    say(f"{len(wanted)} runs in {folder}: {engine.told}")
+    say(f"{len(wanted)} run{'s' if len(wanted) != 1 else ''} in {folder}: {engine.told}")
     manifest = drive(
         wanted,
         folder,

@@ -78,7 +78,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--scheduler",
         metavar="WHERE",
         help="have Dask make the runs: the tcp://HOST:PORT of its scheduler, or slurm:FILE with the keywords of "
-        "dask_jobqueue.SLURMCluster, and jobs, in TOML",
+        "dask_jobqueue.SLURMCluster, and jobs, in TOML; have workers end before their walltime does: "
+        'worker_extra_args = ["--lifetime", "55m", "--lifetime-stagger", "4m"] for an hour',
     )
     parser.add_argument(
         "--dry-run", action="store_true", help="print the script of a job of slurm:FILE; submit none"
@@ -246,7 +247,9 @@ def _status(folder: Path, runs: list[Planned], manifest: Manifest) -> None:
 
 
 def _counted(found: dict[str, int]) -> str:
-    return f"{sum(found.values())} runs: " + ", ".join(f"{n} {state}" for state, n in sorted(found.items()))
+    every = sum(found.values())
+    states = ", ".join(f"{n} {state}" for state, n in sorted(found.items()))
+    return f"{every} run{'s' if every != 1 else ''}: {states}"
 
 
 def _list(runs: list[Planned]) -> None:
