@@ -22,8 +22,8 @@ _FAR = 6.0
 """Times the fastest way of a frame: a jump; a swift contact makes no more than two."""
 _FEW = 3
 """Jumps of a record at most: where there are more the sphere is lost again and again."""
-_STAYS = 5
-"""Frames on each side that lie together."""
+_STAYS, _BACK = 4, 0.75
+"""Frames on each side that lie together, and within which part of the jump: a record may begin with a fast fall."""
 _SIDES = (6, 12, 24)
 """Frames on each side of a kink that tell a speed: many where a camera takes many."""
 _RATIO = 1.6
@@ -55,7 +55,9 @@ def _jumps(track: Track, diameter: float) -> list[Doubt]:
     limit = max(_FAR * fastest, diameter / 2, 20 * track.sigma)
     found = np.flatnonzero((way > limit) & (dt < 1.5 * np.median(dt)))
     found = found[(found >= _STAYS) & (found < len(way) - _STAYS)]
-    stays = [i for i in found.tolist() if max(np.ptp(value[i - _STAYS : i + 1]), _after(value, i)) < way[i] / 2]
+    stays = [
+        i for i in found.tolist() if max(np.ptp(value[i - _STAYS : i + 1]), _after(value, i)) < _BACK * way[i]
+    ]
     if not stays:
         return []
     i = stays[0]

@@ -21,7 +21,7 @@ LEAST_RISE_D = 0.02
 """Rise of at least one bounce, in diameters."""
 BELOW_D = 0.02
 """How far below the wall noise may put the first frame, in diameters."""
-IMPOSSIBLE = ("direction", "clock")
+IMPOSSIBLE = ("direction", "clock", "moved", "kink")
 """Names of doubts about a record that no start, scale or restitution of the model makes up for."""
 SPEEDS = (0.02, 20.0)
 """Between which parts of the terminal speed a record's fastest frames must be; a wrong unit is out by 1000."""

@@ -289,6 +289,16 @@ def test_a_record_that_rests_below_the_wall_is_refused(tmp_path):
         recording("sunk", sunk, datasets.resource("gondret2002_st152").conditions)
 
 
+def test_two_recordings_in_one_track_are_refused():
+    """No start, scale or restitution of a model makes up for a sphere that is lifted to the top again."""
+    track = datasets.load_track("gondret2002_st152")
+    later = 2 * track.time_s[-1] - track.time_s[-2]
+    times = np.concatenate([track.time_s, later + track.time_s - track.time_s[0]])
+    twice = Track(times, np.tile(track.value, 2), track.quantity, track.sigma)
+    with pytest.raises(InputError, match="another recording"):
+        recording("twice", twice, datasets.resource("gondret2002_st152").conditions)
+
+
 def test_e_of_another_edge_is_that_of_the_same_flights_with_the_film_elsewhere(noisy):
     """The truth is of 0.1 d; at 0.3 d the same frames tell the converted e, the loss between the edges in it."""
     _, truth, found = noisy
