@@ -23,7 +23,7 @@ _FAR = 6.0
 _FEW = 3
 """Jumps of a record at most: where there are more the sphere is lost again and again."""
 _STAYS, _BACK = 4, 0.75
-"""Frames on each side that lie together, and within which part of the jump: a record may begin with a fast fall."""
+"""Frames on each side that lie together, to this part of the jump: a record may begin with a fast fall."""
 _SIDES = (6, 12, 24)
 """Frames on each side of a kink that tell a speed: many where a camera takes many."""
 _RATIO = 1.6
