@@ -31,6 +31,8 @@ Bounds = Mapping[str, tuple[float, float]]
 
 _ROUNDS, _POINTS, _BEST = 25, 400, 60
 """Of the search for the start."""
+MOST_STEPS = 100_000
+"""Of the chain: a step of all walkers together takes some 10 ms, and a ridge between floor and tension 25 000 of them."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ def posterior_of(
     """Draws of the parameters, and of t_1, sigma_u and tau of each record in turn."""
     likelihood = _Likelihood(records, len(parameters))
     every = (*parameters, *(x for e in records for x in e.frames.nuisances))
-    return sample(likelihood, _start(likelihood, every, seed), seed, many=True, say=say)
+    return sample(likelihood, _start(likelihood, every, seed), seed, MOST_STEPS, many=True, say=say)
 
 
 class _Likelihood:
