@@ -26,7 +26,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError, model_validator
 
 from restitution.cases.case import Case
-from restitution.cases.reading import case_of, content_of, find, over
+from restitution.cases.reading import case_of, content_of, find, nested, over
 from restitution.conditions import Record, defects_of
 from restitution.errors import Defect, InputError
 from restitution.inputs import read_toml
@@ -129,9 +129,7 @@ class Sweep:
     @property
     def columns(self) -> list[str]:
         """The dotted keys that vary, in the order of the file; those of St are it and what it goes through."""
-        given = (
-            self.asked.runs if self.asked.design == "list" else [_nested(change) for change in self._examples()]
-        )
+        given = self.asked.runs if self.asked.design == "list" else [nested(change) for change in self._examples()]
         names = list(dict.fromkeys(name for change in given for name in _leaves(change)))
         return [*names, self.asked.st_through] if STOKES in names else names
 
@@ -161,11 +159,11 @@ class Sweep:
     def _changed(self, content: dict[str, Any], change: Mapping[str, Any]) -> Case:
         """A base with dotted keys changed."""
         plain = {name: value for name, value in change.items() if name != STOKES}
-        content = over(content, _nested(plain))
+        content = over(content, nested(plain))
         if STOKES not in change:
             return case_of(content, self.file)
         case = case_of(content, self.file, runnable=False)
-        return case_of(over(content, _nested(self._for_stokes(case, change[STOKES]))), self.file)
+        return case_of(over(content, nested(self._for_stokes(case, change[STOKES]))), self.file)
 
     def _for_stokes(self, case: Case, stokes: float) -> dict[str, float]:
         """What gives the Stokes number at the speed of the drive."""
@@ -239,7 +237,7 @@ class Sweep:
         if name == STOKES:
             return value
         content = next(iter(self.contents.values()))
-        return value_of(case_of(over(content, _nested({name: value})), self.file, runnable=False), name)
+        return value_of(case_of(over(content, nested({name: value})), self.file, runnable=False), name)
 
     def _examples(self) -> Iterator[dict[str, Any]]:
         """For each key that varies what it may be, for the names of the columns."""
@@ -283,21 +281,6 @@ def _ways(given: Mapping[str, Any], file: str, within: str = "") -> dict[str, li
         else:
             rule = "must be a list of values, or a range as in { from = 1, to = 2 }"
             raise InputError(Defect(rule, file=file, field=f"vary.{name}", value=str(value)))
-    return found
-
-
-def _nested(change: Mapping[str, Any]) -> dict[str, Any]:
-    """Dotted keys as the tables that they stand for."""
-    found: dict[str, Any] = {}
-    for name, value in change.items():
-        *sections, key = name.split(".")
-        place = found
-        for section in sections:
-            place = place.setdefault(section, {})
-        if isinstance(value, dict) and isinstance(place.get(key), dict):
-            place[key] |= value
-        else:
-            place[key] = value
     return found
 
 

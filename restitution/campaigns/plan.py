@@ -21,7 +21,7 @@ from restitution.cases.case import Case
 from restitution.doubts import of_conditions
 from restitution.errors import Defect, InputError
 from restitution.files import write_folder
-from restitution.runs.record import POINT_PARTICLE
+from restitution.runs.record import POINT_PARTICLE, RESOLVED
 
 FILE = "plan.jsonl"
 RUNS = "runs"
@@ -42,6 +42,8 @@ class Planned:
     record: str | None = None
     """The measured record that it simulates."""
     case: Case | None = None
+    cells: float | None = None
+    """Cells per diameter, of a resolved run."""
 
 
 def planned(varied: Iterable[Varied], show: Callable[[str], None] | None = None) -> list[Planned]:
@@ -52,7 +54,8 @@ def planned(varied: Iterable[Varied], show: Callable[[str], None] | None = None)
         count += 1
         name = f"r{_key(one.case, one.model)}"
         if name not in found:
-            found[name] = Planned(name, one.model, one.parameters, one.case.record, _plain(one.case, name))
+            cells = one.case.numerics.cells_per_diameter if one.model == RESOLVED and one.case.numerics else None
+            found[name] = Planned(name, one.model, one.parameters, one.case.record, _plain(one.case, name), cells)
     if show is not None and count > len(found):
         show(f"{count - len(found)} of {count} runs are the same as others: each is made once")
     if show is not None:
@@ -65,8 +68,8 @@ def write_plan(folder: Path, runs: Iterable[Planned]) -> None:
     """Write ``plan.jsonl``, the folder made if need be."""
     lines = []
     for r in runs:
-        record = {} if r.record is None else {"record": r.record}
-        told = {"run": r.run, "model": r.model, "parameters": r.parameters, **record}
+        told: dict[str, Any] = {"run": r.run, "model": r.model, "parameters": r.parameters}
+        told |= {name: value for name, value in (("record", r.record), ("cells", r.cells)) if value is not None}
         lines.append(f"{json.dumps(told, allow_nan=False)}\n")
     write_folder(folder, {FILE: "".join(lines)})
 

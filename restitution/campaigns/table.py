@@ -3,7 +3,8 @@
 ===============  ============================================================================================
 file             content
 ===============  ============================================================================================
-``runs.csv``     ``run``, ``state``, ``model``, ``record`` where one is simulated, a column a key varied, in SI,
+``runs.csv``     ``run``, ``state``, ``model``, ``record`` where one is simulated, ``cells_per_diameter`` where the
+                 flow is resolved and they are not varied, a column a key varied, in SI,
                  ``track``, where its trajectory lies from the sweep's folder, ``seconds``, ``attempts``,
                  ``message``
 ``impacts.csv``  the impacts under one definition of speed, ``record`` being the run: for ``restitution fit``
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TABLE, IMPACTS = "runs.csv", "impacts.csv"
+CELLS = "numerics.cells_per_diameter"
 _DIGITS = "%.12g"
 
 
@@ -53,9 +55,11 @@ def write_tables(folder: Path, speed: str = Speed.FAR) -> str | None:
         raise InputError(*gone)
     names = list(dict.fromkeys(name for run in runs for name in run.parameters))
     of_records = any(run.record is not None for run in runs)
+    of_cells = CELLS not in names and any(run.cells is not None for run in runs)
     own = ["run", "state", "model", *(["record"] if of_records else [])]
+    own += [CELLS.rpartition(".")[2]] if of_cells else []
     headings = [*own, *names, "track", "seconds", "attempts", "message"]
-    rows = [_row(run, names, manifest, of_records) for run in runs]
+    rows = [_row(run, names, manifest, of_records, of_cells) for run in runs]
     columns = list(datasets.schema("impact").columns)
     impacts, finished, without, others = list[list[str]](), 0, 0, False
     for run in (r for r in runs if manifest.of(r.run).state == FINISHED):
@@ -101,7 +105,7 @@ def impacts_of(folder: Path) -> pd.DataFrame:
     return impacts.rename(columns={"record": "run"}).merge(runs, on="run", suffixes=("", "_of_case"))
 
 
-def _row(run: Planned, names: Sequence[str], manifest: Manifest, of_records: bool) -> list[Any]:
+def _row(run: Planned, names: Sequence[str], manifest: Manifest, of_records: bool, of_cells: bool) -> list[Any]:
     standing = manifest.of(run.run)
     finished = standing.state == FINISHED
     return [
@@ -109,6 +113,7 @@ def _row(run: Planned, names: Sequence[str], manifest: Manifest, of_records: boo
         standing.shown,
         run.model,
         *([run.record] if of_records else []),
+        *([run.cells] if of_cells else []),
         *(_cell(run.parameters.get(name)) for name in names),
         f"{RUNS}/{run.run}/trajectory.csv" if finished else "",
         round(standing.seconds, 3) if finished else None,

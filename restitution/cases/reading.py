@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -169,6 +169,21 @@ def over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
         both = isinstance(value, dict) and isinstance(merged.get(key), dict)
         merged[key] = {**merged[key], **value} if both and _KIND.get(key) not in value else value
     return merged
+
+
+def nested(change: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted keys as the tables that they stand for."""
+    found: dict[str, Any] = {}
+    for name, value in change.items():
+        *sections, key = name.split(".")
+        place = found
+        for section in sections:
+            place = place.setdefault(section, {})
+        if isinstance(value, dict) and isinstance(place.get(key), dict):
+            place[key] |= value
+        else:
+            place[key] = value
+    return found
 
 
 def _with_record(content: dict[str, Any], file: str) -> None:

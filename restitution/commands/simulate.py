@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from restitution.commands.cases import run_list
-from restitution.commands.console import doubt_aside, show
+from restitution.commands.console import doubt_aside, show, show_doubts
 
 if TYPE_CHECKING:
     from restitution.cases.case import Case
@@ -27,6 +27,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--out", metavar="FOLDER", help="where to write the results (a folder named after the case)"
+    )
+    parser.add_argument(
+        "--calibrated",
+        metavar="SOLVER.json",
+        help="take the values that calibrate-solver recommends for the case's cells per diameter, in place of the "
+        "case's own",
     )
     parser.add_argument("--resume", action="store_true", help="continue from the checkpoint in the folder, if any")
     parser.add_argument(
@@ -64,6 +70,8 @@ def run(args: argparse.Namespace) -> int | None:
     if args.template is not None:
         _write_template(find(args.case), Path(args.template))
         return None
+    if args.calibrated is not None:
+        case = _calibrated(args)
     doubt_aside(case.conditions, args.case)
     folder = folder_for(args.out, case.name, RESOLVED)
 
@@ -78,10 +86,21 @@ def run(args: argparse.Namespace) -> int | None:
         return 2
     except KeyboardInterrupt:
         if (folder / CHECKPOINT).exists():
-            say(f"stopped; continue with: restitution simulate {args.case} --out {folder} --resume")
+            also = f" --calibrated {args.calibrated}" if args.calibrated is not None else ""
+            say(f"stopped; continue with: restitution simulate {args.case}{also} --out {folder} --resume")
         raise
     show_result(folder, case)
     return None
+
+
+def _calibrated(args: argparse.Namespace) -> Case:
+    """The case with the recommended values, which are said."""
+    from restitution.emulation.applied import calibrated
+
+    case, values, doubts = calibrated(args.case, args.calibrated)
+    show(f"{args.calibrated}: " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))
+    show_doubts(doubts)
+    return case
 
 
 def _write_template(case: Path, target: Path) -> None:

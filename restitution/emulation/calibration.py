@@ -32,7 +32,7 @@ Bounds = Mapping[str, tuple[float, float]]
 _ROUNDS, _POINTS, _BEST = 25, 400, 60
 """Of the search for the start."""
 MOST_STEPS = 100_000
-"""Of the chain: a step of all walkers together takes some 10 ms, and a ridge between floor and tension 25 000 of them."""
+"""Of the chain: a step of all walkers together takes some 10 ms, a ridge of floor and tension 25 000 of them."""
 
 
 @dataclass(frozen=True)

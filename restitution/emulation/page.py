@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from importlib import metadata
 
 from restitution.emulation import plot
 from restitution.emulation.calibration import Calibration
+from restitution.emulation.gained import GAIN, closer, distances
 from restitution.emulation.solver_file import FILE, solver_fit
 from restitution.report.page import render
 
@@ -31,7 +31,7 @@ def files(table: str, found: Sequence[Calibration], command: str) -> dict[str, s
     page = render(
         "solver.html.j2", title="A solver calibrated by its runs", command=command, groups=groups, fit=fit,
         recommended=recommended(found), missed=missed(found), gains=[gain(c) for c in found],
-        worth=not missed(found) and any(closer(c) < GAIN for c in found),
+        worth=not missed(found) and any(closer(c.predictions) < GAIN for c in found),
         sklearn=metadata.version("scikit-learn"),
     )  # fmt: skip
     return {"index.html": page, FILE: fit.text(), **contents}
@@ -67,39 +67,14 @@ def said(c: Calibration, name: str) -> str:
     return f"{t.share:.0%} of the prior's width"
 
 
-GAIN = 0.9
-"""Distance to records after over that before, below which something is gained; one apex read anew moves it so."""
-
-
-def closer(c: Calibration) -> float:
-    """Distance after over that before, root mean squares: of records that had no say, else of those met."""
-    distances = _distances(c)
-    before, after = distances.get(True, distances[False])
-    return after / before
-
-
-def _distances(c: Calibration) -> dict[bool, tuple[float, float]]:
-    """Root mean square distance before and after, in diameters, of records held out and of those met."""
-    found = {}
-    for held in (False, True):
-        own = [p for p in c.predictions if p.held_out is held]
-        if own:
-            before, after = (
-                math.sqrt(sum(getattr(p, f"rms_{when}_d") ** 2 for p in own) / len(own))
-                for when in ("before", "after")
-            )
-            found[held] = (before, after)
-    return found
-
-
 def gain(c: Calibration) -> str:
     """Whether records come closer, those that were met and those that had no say, in a sentence."""
-    distances = _distances(c)
+    known = distances(c.predictions)
     parts = [
         f"records {'held out' if held else 'met'} from {before:.3f} to {after:.3f} d"
-        for held, (before, after) in distances.items()
+        for held, (before, after) in known.items()
     ]
-    which = "that had no say" if True in distances else "that were met (none was held out)"
-    said = f"{'something' if closer(c) < GAIN else 'nothing'} is gained on records {which}"
+    which = "that had no say" if True in known else "that were met (none was held out)"
+    said = f"{'something' if closer(c.predictions) < GAIN else 'nothing'} is gained on records {which}"
     label = f"{c.group.label}: " if c.group.label else ""
     return f"{label}root mean square distances go, {', '.join(parts)}: {said}."
