@@ -115,8 +115,8 @@ def _local(wanted: list[Planned], processes: int | None, threads: int) -> Iterat
     executor = LocalProcesses(count, threads)
     try:
         yield Engine(executor, lambda: count, lambda: None, told)
+        executor.shutdown()  # within: an interrupt that comes only now has the processes end too
     except BaseException:
         executor.interrupt()
         executor.shutdown(cancel_futures=True)
         raise
-    executor.shutdown()

@@ -7,6 +7,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,9 @@ from restitution.tables import check_table
 from tests import sweeps
 
 LONG = 0.12
-"""Span of runs that take two to three seconds: time to kill in."""
+"""Span of runs that take half a second to some seconds: time to kill in."""
+LONGER = 0.6
+"""Of which six runs are never done before an interrupt a second after the first has begun."""
 
 
 def cases(folder: Path, text: str) -> list:
@@ -335,10 +338,11 @@ def test_a_killed_process_costs_its_own_run_alone(tmp_path):
 
 
 def test_an_interrupt_leaves_checkpoints_from_which_two_drivers_go_on(tmp_path):
-    out, file = tmp_path / "out", sweeps.tiny(tmp_path, LONG)
+    file = sweeps.tiny(tmp_path, LONGER)
     for seconds in (1.0, 2.0, 4.0, 8.0):  # before its first step, at which kernels load, a run leaves nothing
+        out = tmp_path / f"after {seconds} s"
         with sweeps.start(file, "--out", out, "--processes", 2, "--no-forks") as driver:
-            sweeps.until(lambda: sweeps.under_way(out))
+            sweeps.until(partial(sweeps.under_way, out))
             time.sleep(seconds)
             driver.send_signal(signal.SIGINT)
             _, said = driver.communicate(timeout=60)
@@ -350,6 +354,17 @@ def test_an_interrupt_leaves_checkpoints_from_which_two_drivers_go_on(tmp_path):
     both = [sweeps.start(file, "--out", out, "--processes", 1, "--no-forks") for _ in range(2)]
     assert [p.communicate(timeout=120) and p.returncode for p in both] == [0, 0]
     assert sorted(sweeps.finished(out).values()) == [1] * 6
+
+
+def test_an_interrupt_at_the_very_end_leaves_no_traceback(tmp_path):
+    """While the processes of a sweep that is done are ended."""
+    file, out = sweeps.tiny(tmp_path, rest="[vary]\nsphere.e_dry = [0.8, 0.9]\n"), tmp_path / "out"
+    with sweeps.start(file, "--out", out, "--processes", 2) as driver:
+        sweeps.until(lambda: len(sweeps.finished(out)) == 2)
+        driver.send_signal(signal.SIGINT)
+        _, said = driver.communicate(timeout=60)
+    assert driver.returncode in (0, 130)
+    assert "Traceback" not in said
 
 
 def test_a_case_that_is_refused_is_tried_once_and_retry_asks_again(tmp_path, capsys):
