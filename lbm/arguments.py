@@ -7,6 +7,7 @@ import numbers
 import operator
 import os
 import reprlib
+from collections.abc import Iterable
 from pathlib import Path
 
 import numba
@@ -83,6 +84,16 @@ def vector(name: str, value) -> np.ndarray:
     found = array(name, value)
     if found.shape != (3,):
         raise InputError(f"{name} = {shown(value)}: give 3 components")
+    return found
+
+
+def several(name: str, value, kind: type) -> list:
+    """At least one object of ``kind``, as a list."""
+    if not isinstance(value, Iterable) or not (found := list(value)):
+        raise InputError(f"{name} = {shown(value)}: give a list of {kind.__name__}, also of one")
+    for item in found:
+        if not isinstance(item, kind):
+            raise InputError(f"{name}: {shown(item)} is no {kind.__name__}")
     return found
 
 

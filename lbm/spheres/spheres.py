@@ -126,14 +126,17 @@ class Spheres(Body):
     ):
         if interpolation not in SCHEMES:
             raise InputError(f"interpolation {interpolation!r} unknown; known: {', '.join(SCHEMES)}")
+        spheres = arguments.several("spheres", spheres, Sphere)
         self.radii = np.array([arguments.positive("radius", s.radius) for s in spheres])
-        if self.radii.size == 0 or self.radii.min() < _SMALLEST_RADIUS:
+        if self.radii.min() < _SMALLEST_RADIUS:
             raise InputError(f"radius: at least {_SMALLEST_RADIUS:g} cells are needed to resolve a sphere")
         self.volumes = 4 / 3 * np.pi * self.radii**3
         self.masses = self.volumes * [arguments.positive("density", s.density) for s in spheres]
         self.centres = np.array([arguments.vector("position", s.position) for s in spheres])
         self.velocities = np.array([arguments.vector("velocity", s.velocity) for s in spheres])
         self.spins = np.array([arguments.vector("spin", s.spin) for s in spheres])
+        arguments.speed("velocity of a sphere", self.velocities, axis=1)
+        arguments.speed("surface of a sphere, spin x radius", self.spins * self.radii[:, None], axis=1)
         self.spin_changes = np.zeros_like(self.spins)
         self.gravity = arguments.vector("gravity", gravity).copy()
         self.film, self.contact, self.drive = film, contact, drive

@@ -182,6 +182,8 @@ class SoftMotion(FilmMotion):
         dt = super()._substep_size(gap, v)
         if v == 0:
             return dt
+        if gap < 0 and self.touch == 0:  # no film is left that asks for less
+            return min(1 / _FEWEST, self.contact.duration / _PER_CONTACT)
         dt = min(1 / _FEWEST, max(dt, self.fraction * self.touch / abs(v)))
         if gap < self.touch + abs(v) * dt:
             dt = min(dt, self.contact.duration / _PER_CONTACT)

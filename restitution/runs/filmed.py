@@ -8,6 +8,7 @@ import numpy as np
 
 from restitution import datasets
 from restitution.cases.case import Case
+from restitution.impacts.bounces import LEAST_RISE_D
 from restitution.impacts.find import find_impacts
 from restitution.stokes import MEASURED_SPEEDS
 from restitution.tracks import MINIMUM_FRAMES, Track
@@ -28,6 +29,8 @@ def simulated_impacts(trajectory: pd.DataFrame, case: Case) -> tuple[pd.DataFram
     if case.sphere.e_dry is None or len(trajectory) < MINIMUM_FRAMES:
         return pd.DataFrame(columns=columns), []
     track = _as_filmed(trajectory, case)
+    if _camera(case) is None:
+        track = at_rest(track, LEAST_RISE_D * case.sphere.diameter)
     rows, notes = [], []
     for speed in MEASURED_SPEEDS:
         found = find_impacts(track, case.conditions, speed, record=case.name, kind="simulated")
@@ -63,6 +66,21 @@ def _interval(track: Track) -> float:
 def _as_filmed(trajectory: pd.DataFrame, case: Case) -> Track:
     """The trajectory as the record's camera would have it."""
     return as_filmed(Track.from_table(trajectory), _camera(case))
+
+
+def at_rest(track: Track, rise_m: float) -> Track:
+    """The track with the sphere still from where it first turns after it has last been above ``rise_m``.
+
+    The fluid goes on stirring a sphere that has come to rest, by less than a thousandth of a diameter. Without a
+    camera's noise that looks like impacts, whose e_eff means nothing.
+    """
+    gaps = track.value.copy()
+    above = np.flatnonzero(gaps > rise_m)
+    still = gaps[above[-1] :] if len(above) else gaps
+    rising = np.flatnonzero(np.diff(still) > 0)
+    if len(rising):
+        still[rising[0] :] = still[rising[0] :].min()
+    return Track(track.time_s, gaps, track.quantity, track.sigma)
 
 
 def as_filmed(track: Track, camera: Track | None) -> Track:

@@ -11,11 +11,11 @@ import pytest
 from scipy.integrate import quad
 
 from lbm import Rates, Simulation
-from lbm.errors import DivergenceError
+from lbm.errors import DivergenceError, InputError
 from lbm.problems import bouncing_spheres as bouncing
 from lbm.problems import spheres as flows
-from lbm.spheres import RESOLVED, Sphere, Spheres, lost_to_grid
-from lbm.spheres.wall_motion import FRACTION
+from lbm.spheres import RESOLVED, SoftContact, Sphere, Spheres, lost_to_grid
+from lbm.spheres.wall_motion import FRACTION, motion_at_wall
 
 RATES = Rates.two_relaxation_times(0.1)
 STILL = (0.0, 0.0, 0.0)
@@ -92,17 +92,14 @@ def test_slow_changes_of_spin_follow_the_torque_alone():
     [
         {"gravity": (0.0, 0.0, -1e3)},
         {"gravity": (1e300, 0.0, 0.0)},
-        {"spin": (0.0, 0.0, 1e8)},
         {"drive": lambda step, gap: (0.0, 0.0, -1e12)},
     ],
-    ids=["to the wall", "overflow", "spin", "drive"],
+    ids=["to the wall", "overflow", "drive"],
 )
 def test_a_sphere_that_runs_away_is_stopped_in_the_step_in_which_it_does(start):
     """Near a wall its sub-steps would have no end; far away its place would be no number."""
-    options = dict(start)
-    sphere = Sphere(3.0, 8.0, (8.0, 8.0, 3.4), spin=options.pop("spin", (0.0, 0.0, 0.0)))
     flow = Simulation((16, 16, 16), viscosity=0.1, faces={"z": "no-slip"})
-    flow.add(Spheres([sphere], **options))
+    flow.add(Spheres([Sphere(3.0, 8.0, (8.0, 8.0, 3.4))], **start))
     with pytest.raises(DivergenceError, match="sphere 0") as stopped:
         flow.run(100)
     assert stopped.value.step <= 2
@@ -192,3 +189,39 @@ def test_what_the_grid_lacks_of_a_film_is_the_integral_of_its_pressure(gap):
     c = RESOLVED
     share, _ = quad(lambda H: 2 * (H - c) ** 2 / ((H - gap) * H**3), c, math.inf, epsabs=1e-12)
     assert lost_to_grid(gap) == pytest.approx(1 / gap - share, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("spheres", "names"),
+    [
+        ([], "list of Sphere"),
+        (Sphere(4.0, 2.0, (12.0, 12.0, 12.0)), "list of Sphere"),
+        ([3], "no Sphere"),
+        ([Sphere(4.0, 2.0, (12.0, 12.0, 12.0), velocity=(0.0, 0.0, 0.6))], "above that of sound"),
+        ([Sphere(4.0, 2.0, (12.0, 12.0, 12.0), spin=(0.0, 0.2, 0.0))], "above that of sound"),
+    ],
+)
+def test_what_is_no_list_of_spheres_or_outruns_sound_is_refused(spheres, names):
+    with pytest.raises(InputError, match=names):
+        Spheres(spheres)
+
+
+def test_a_soft_contact_without_a_film_rebounds_in_a_few_sub_steps():
+    """The linear spring and dashpot of e_dry, the fluid left out: exactly e_dry at the end of the contact."""
+    contact = SoftContact.linear(0.8, mass=1.0, duration=20.0)
+    motion, sub_steps = motion_at_wall(None, contact, FRACTION), 0
+    counted = motion._substep
+
+    def count(*state):
+        nonlocal sub_steps
+        sub_steps += 1
+        return counted(*state)
+
+    motion._substep = count
+    gap, v, impacts = 0.05, -0.02, []
+    for step in range(60):
+        gap, v, found = motion.step(step, gap, v, 0.0, 0.0, 1.0)
+        impacts += found
+    assert v / 0.02 == pytest.approx(0.8, abs=0.05)
+    assert len(impacts) == 1
+    assert sub_steps < 5000
