@@ -8,7 +8,7 @@ from restitution.campaigns.design import value_of
 from restitution.cases.case import Case
 from restitution.cases.reading import case_of, content_of, find, nested, over
 from restitution.doubts import Doubt
-from restitution.emulation.gained import GAIN, closer, distances
+from restitution.emulation.held_out import GAIN, closer, distances
 from restitution.emulation.runs_table import CELLS
 from restitution.emulation.solver_file import GroupFit, read_solver
 from restitution.errors import Defect, InputError

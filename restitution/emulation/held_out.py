@@ -6,8 +6,10 @@ time alone. Bands have the parameters and the emulator's own error in them, not 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,8 @@ from numpy.typing import NDArray
 from restitution.emulation.emulated import Emulated
 
 QUANTILES = (0.025, 0.16, 0.5, 0.84, 0.975)
+GAIN = 0.9
+"""Distance to records after over that before, below which something is gained; one apex read anew moves it so."""
 _DRAWS = 400
 _TOUCHES, _REACH = 121, 1.5
 """Times of the first contact that are tried, over so many frames to both sides, then nearer."""
@@ -90,3 +94,35 @@ def _values(
             bands = [tuple(map(float, np.quantile(x[label], QUANTILES))) for x in (before, after)]
             found.append(Value(label, *map(float, measured[label]), *bands))
     return tuple(found)
+
+
+class Distances(Protocol):
+    """A record: whether it was held out, root mean square distances of its frames in diameters."""
+
+    @property
+    def held_out(self) -> bool: ...
+    @property
+    def rms_before_d(self) -> float: ...
+    @property
+    def rms_after_d(self) -> float: ...
+
+
+def distances(records: Iterable[Distances]) -> dict[bool, tuple[float, float]]:
+    """Root mean square distance before and after, of records held out (True) and of those met (False)."""
+    records, found = list(records), {}
+    for held in (False, True):
+        own = [r for r in records if r.held_out is held]
+        if own:
+            before, after = (
+                math.sqrt(sum(x**2 for x in each) / len(own))
+                for each in ([r.rms_before_d for r in own], [r.rms_after_d for r in own])
+            )
+            found[held] = (before, after)
+    return found
+
+
+def closer(records: Iterable[Distances]) -> float:
+    """Distance after over that before: of records that had no say, else of those met."""
+    known = distances(records)
+    before, after = known.get(True, known[False])
+    return after / before

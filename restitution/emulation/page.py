@@ -7,7 +7,7 @@ from importlib import metadata
 
 from restitution.emulation import plot
 from restitution.emulation.calibration import Calibration
-from restitution.emulation.gained import GAIN, closer, distances
+from restitution.emulation.held_out import GAIN, closer, distances
 from restitution.emulation.solver_file import FILE, solver_fit
 from restitution.report.page import render
 

@@ -10,7 +10,7 @@ import pytest
 from restitution.calibration.reading.reading import Reading
 from restitution.cli import main
 from restitution.emulation import calibrate, read_runs, read_solver
-from restitution.emulation.gained import GAIN, closer
+from restitution.emulation.held_out import GAIN, closer
 from restitution.emulation.page import files, gain
 from restitution.errors import InputError
 
