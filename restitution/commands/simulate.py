@@ -95,7 +95,7 @@ def run(args: argparse.Namespace) -> int | None:
 
 def _calibrated(args: argparse.Namespace) -> Case:
     """The case with the recommended values, which are said."""
-    from restitution.emulation.applied import calibrated
+    from restitution.emulation.solver_file import calibrated
 
     case, values, doubts = calibrated(args.case, args.calibrated)
     show(f"{args.calibrated}: " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))

@@ -6,7 +6,7 @@ Gaussian processes), :mod:`.emulator_check` (how well it predicts runs it has no
 probable the frames of a record are), :mod:`.simulated` (whether runs are of its fluid and sphere),
 :mod:`.emulated` (all of that for one record), :mod:`.held_out` (records predicted, before and after, and whether
 they come closer), :mod:`.told` (what a posterior says, and what is doubtful), :mod:`.calibration`,
-:mod:`.solver_file` (``solver.json``), :mod:`.applied` (its values in a case), :mod:`.plot` and :mod:`.page`.
+:mod:`.solver_file` (``solver.json``, and its values in a case), :mod:`.plot` and :mod:`.page`.
 """
 
 from restitution.emulation.calibration import Calibration, calibrate

@@ -6,7 +6,7 @@ import pytest
 
 from restitution.calibration.estimation.maximum import LEVELS
 from restitution.cases.reading import read_case
-from restitution.emulation.applied import calibrated
+from restitution.emulation.solver_file import calibrated
 from restitution.errors import InputError
 
 FLOOR = {
