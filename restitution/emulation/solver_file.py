@@ -203,7 +203,9 @@ def calibrated(case: str | Path, solver: str | Path) -> tuple[Case, dict[str, fl
     fitting = [g for g in groups if all(_has(before, name, value) for name, value in g.group.items())]
     if not fitting:
         known = "; ".join(", ".join(f"{name} = {value}" for name, value in g.group.items()) for g in groups)
-        rule = f"has no calibration of runs like {before.name}, {_cells(before)} cells a diameter, but of {known}"
+        cells = _cells(before)
+        own = "without [numerics]" if cells is None else f"{cells:g} cells a diameter"
+        rule = f"has no calibration of runs like {before.name}, {own}, but of {known}"
         raise InputError(Defect(rule, file=str(solver), field="groups"))
     group = fitting[0]
     strange = [
