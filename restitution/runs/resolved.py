@@ -118,7 +118,7 @@ class ResolvedRun:
         span, found = self.case.run, self.contacts
         if span.after_contact is None:
             return span.duration or self._longest
-        first = found[0].time_s if found else fall_time(self.case)
+        first = found[0].time_s if found else max(fall_time(self.case), self.time_s)  # it may sink slower
         return min(first + span.after_contact, span.duration or math.inf)
 
     @property

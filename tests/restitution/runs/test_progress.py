@@ -1,10 +1,13 @@
 """How a run reports itself."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 
+from restitution.cases.reading import read_case
 from restitution.runs import progress as run_progress
+from restitution.runs.resolved import ResolvedRun
 
 
 def test_the_time_left_of_a_resumed_run_is_counted_from_where_it_resumed(monkeypatch, capsys):
@@ -18,3 +21,9 @@ def test_the_time_left_of_a_resumed_run_is_counted_from_where_it_resumed(monkeyp
     # 10 - 8.05 at 0.05 a second
     assert left[0] == pytest.approx(39, abs=1)
     assert left[-1] == pytest.approx((10 - 8.95) / 0.05, abs=1)
+
+
+def test_a_sphere_that_sinks_slower_than_thought_has_its_bounces_still_before_it():
+    case = read_case("li_drop1")
+    late = SimpleNamespace(case=case, contacts=[], time_s=3.0)
+    assert ResolvedRun.expected_s.fget(late) == pytest.approx(3.0 + case.run.after_contact)
