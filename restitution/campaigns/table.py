@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TABLE, IMPACTS = "runs.csv", "impacts.csv"
-CELLS = "numerics.cells_per_diameter"
+CELLS = "cells_per_diameter"
 _DIGITS = "%.12g"
 
 
@@ -55,9 +55,9 @@ def write_tables(folder: Path, speed: str = Speed.FAR) -> str | None:
         raise InputError(*gone)
     names = list(dict.fromkeys(name for run in runs for name in run.parameters))
     of_records = any(run.record is not None for run in runs)
-    of_cells = CELLS not in names and any(run.cells is not None for run in runs)
+    of_cells = f"numerics.{CELLS}" not in names and any(run.cells is not None for run in runs)
     own = ["run", "state", "model", *(["record"] if of_records else [])]
-    own += [CELLS.rpartition(".")[2]] if of_cells else []
+    own += [CELLS] if of_cells else []
     headings = [*own, *names, "track", "seconds", "attempts", "message"]
     rows = [_row(run, names, manifest, of_records, of_cells) for run in runs]
     columns = list(datasets.schema("impact").columns)

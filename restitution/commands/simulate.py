@@ -58,6 +58,8 @@ def run(args: argparse.Namespace) -> int | None:
     from restitution.runs.record import RESOLVED
     from restitution.runs.simulate import CHECKPOINT, SO_FAR, simulate
 
+    if args.calibrated is not None and (args.list or args.template is not None):
+        raise InputError("--calibrated changes a run, it has no effect on --list and --template")
     if args.list:
         run_list(args)
         return None

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution import datasets
+from restitution.campaigns.table import CELLS
 from restitution.doubts import Doubt
 from restitution.errors import Defect, InputError, of_rows
 from restitution.tables.csv_text import CsvText
@@ -33,7 +34,6 @@ from restitution.units import NUMBER
 
 FILE = "runs.csv"
 OWN = ("run", "state", "track", "record", "seconds", "attempts", "message")
-CELLS = "cells_per_diameter"
 FINISHED = "finished"
 _ALIKE = 1e-9
 """Relative difference below which two values of a parameter are the same."""

@@ -251,6 +251,5 @@ def _doubts(group: GroupFit, file: str) -> Iterator[Doubt]:
         yield Doubt("cells", "does not say of how many cells a diameter its runs are: are they the case's?", file)
     idle = [p.name for p in group.parameters if not p.told]
     if idle:
-        yield Doubt(
-            "not told", f"its records say nothing about {', '.join(idle)}: it has the middle of the runs", file
-        )
+        rule = f"its records say nothing about {', '.join(idle)}: a median of all that was run, no finding"
+        yield Doubt("not told", rule, file)

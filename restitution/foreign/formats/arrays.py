@@ -79,10 +79,13 @@ def _matlab(data: bytes, file: str) -> str:
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
-    wrong = (MatReadError, ValueError, TypeError, LookupError, OSError, EOFError, NotImplementedError, MemoryError)
+    wrong = (
+        MatReadError, ValueError, TypeError, LookupError, OSError, EOFError, NotImplementedError, MemoryError,
+        ArithmeticError, AttributeError, zlib.error,
+    )  # fmt: skip
     try:
         content = loadmat(io.BytesIO(data), squeeze_me=False, struct_as_record=True)
-    except (*wrong, ArithmeticError, AttributeError, zlib.error):
+    except wrong:
         raise InputError(Defect("is a workspace of MATLAB that cannot be read", file=file)) from None
     if (tracks := content.get("tracksFinal")) is not None and "tracksCoordAmpCG" in (tracks.dtype.names or ()):
         return _u_track(tracks)
