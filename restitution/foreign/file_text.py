@@ -16,7 +16,6 @@ from restitution.units import NAMES_BEYOND_ASCII
 
 _BINARY = {
     b"PK\x03\x04": "is an archive, no text; save the table as CSV",
-    b"\xd0\xcf\x11\xe0": "is an old spreadsheet, no text; save the table as CSV",
     b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.formats.hdf5`
 }
 

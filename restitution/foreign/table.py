@@ -164,7 +164,7 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
         return _of_spots(file, hdf5.spots(data, file))
     if digitised.is_project(path):
         return _of_curves(path)
-    text = kinds.text_in(data, file)
+    text, sheet = kinds.text_in(data, file)
     if (stripped := text.strip())[:1] == "{" or (
         stripped[:1] == "[" and stripped[-1:] == "]"
     ):  # a unit may begin it
@@ -175,7 +175,7 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
     for known, read, program in kinds.BLOCKS:
         if known(lines):
             return _of_blocks(file, read(lines, file), program)
-    layout = layout_of(lines, file, decimal)
+    layout = layout_of(lines, file, decimal, sheet=sheet)
     parts = sections(layout)
     if len(parts) < 2:
         return _of_layout(parts[0].layout(layout) if parts else layout)
@@ -284,7 +284,9 @@ def _rows(rows: list[Row], columns: list[int], layout: Layout, file: str) -> lis
 def _form(layout: Layout, heading: Heading) -> str:
     """How the file is written, where it is not as the project's own tables are."""
     words = []
-    if layout.separator != ",":
+    if layout.sheet:
+        words.append(layout.sheet)
+    elif layout.separator != ",":
         words.append("columns separated by " + SEPARATORS[layout.separator])
     if layout.decimal == ",":
         words.append("decimal commas")

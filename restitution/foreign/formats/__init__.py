@@ -1,7 +1,8 @@
 """Files that are no text of columns under names.
 
-:mod:`~restitution.foreign.formats.kinds` knows them; :mod:`~restitution.foreign.formats.workbook` (spreadsheets)
-and :mod:`~restitution.foreign.formats.arrays` (NumPy, MATLAB, JSON) give text;
+:mod:`~restitution.foreign.formats.kinds` knows them; :mod:`~restitution.foreign.formats.workbook` (spreadsheets;
+:mod:`~restitution.foreign.formats.spreadsheet_cells`, :mod:`~restitution.foreign.formats.excel_2003`) and
+:mod:`~restitution.foreign.formats.arrays` (NumPy, MATLAB, JSON) give text;
 :mod:`~restitution.foreign.formats.blocks` (many small tables below each other),
 :mod:`~restitution.foreign.formats.zones` (files for plots, LabVIEW's measurements),
 :mod:`~restitution.foreign.formats.openptv` (a file a frame),

@@ -26,13 +26,13 @@ BLOCKS: tuple[tuple[Callable[[list[str]], bool], Callable[[list[str], str], Read
 """How a text of many small tables is known, what it holds, whose it is."""
 
 
-def text_in(data: bytes, file: str) -> str:
-    """The text in the bytes of a file, written out where they are a spreadsheet or an array."""
+def text_in(data: bytes, file: str) -> tuple[str, str]:
+    """The text in the bytes of a file, written out where they are a spreadsheet or an array; of which sheet."""
     if workbook.is_workbook(data):
         return workbook.text_of_sheet(data, file)
-    return arrays.text_of_array(data, file) if arrays.is_array(data) else text_of(data, file)
+    return arrays.text_of_array(data, file) if arrays.is_array(data) else text_of(data, file), ""
 
 
 def read_lines(path: str | Path) -> list[str]:
     """The lines of a table without their ends; raises :class:`InputError` where it is none."""
-    return lines_of(text_in(read_bytes(path), str(path)), str(path))
+    return lines_of(text_in(read_bytes(path), str(path))[0], str(path))
