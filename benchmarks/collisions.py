@@ -111,9 +111,10 @@ def film(preset: Callable, viscosity: float, speed: float, diameter: int = 10) -
     return {"at 2 cells": means[0], "worst": max(means, key=abs)}
 
 
-def moving(preset: Callable, viscosity: float = 0.003) -> dict[str, float]:
-    """Noise of a sphere of 10 cells that crosses the grid obliquely."""
-    found = translation(10, (1, 0.62, 0.37), viscosity=viscosity, width=4, dtype="float32", preset=preset)
+def moving(preset: Callable, viscosity: float = 0.003, diameter: int = 10, width: float = 4) -> dict[str, float]:
+    """Noise of a sphere that crosses the grid obliquely in a periodic cube ``width`` diameters wide."""
+    way = (1, 0.62, 0.37)
+    found = translation(diameter, way, viscosity=viscosity, width=width, dtype="float32", preset=preset)
     return {"noise": float(found.noise)}
 
 
@@ -148,6 +149,8 @@ FLOWS: dict[str, tuple[int, Callable]] = {
     "sphere towards a wall, 10 cells, nu 1/6": (len(CANDIDATES), lambda preset: film(preset, 1 / 6, 2e-3)),
     "sphere towards a wall, 10 cells, nu 0.02": (len(CANDIDATES), lambda preset: film(preset, 0.02, 5e-4)),
     "moving sphere, 10 cells, nu 0.003": (UNIFORM, moving),
+    "moving sphere, 10 cells, nu 0.003, box 6 d wide": (UNIFORM, lambda preset: moving(preset, width=6)),
+    "moving sphere, 16 cells, nu 0.0048": (UNIFORM, lambda preset: moving(preset, 0.0048, 16)),
     "moving sphere, 10 cells, grid Re 30": (UNIFORM, lambda preset: moving(preset, 0.05 / 30)),
     "moving sphere, 10 cells, Re 100": (UNIFORM, moving_over_held),
     "first rebound at St 152, 10 cells, 0.025": (len(CANDIDATES), lambda preset: first_rebound(preset, 0.025)),
