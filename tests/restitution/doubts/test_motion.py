@@ -270,6 +270,25 @@ def test_an_upside_down_record_on_a_players_clock_is_told_both():
         assert names(as_track(np.arange(len(fallen)) / 30, fallen), c) == ["direction", "clock"]
 
 
+@pytest.mark.parametrize("quantity", ["gap", "velocity"])
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("slow", [3.0, 10.0, 30.0])
+def test_upside_down_and_slow_is_told_both_while_the_sphere_still_bounces(seed, slow, quantity):
+    """A record of long flights, far more frames than in :func:`ordinary`, that ends in mid-air."""
+    c = STEEL_IN_OIL
+    d, g = c.sphere.diameter, c.gravity
+    fall = g * (c.sphere.density - c.fluid.density) / (c.sphere.density + c.fluid.density / 2)
+    flights, _ = fly(10 * d, 0.0, [0.8, 0.7, 0.6], steady_fall(c), fall)
+    times = np.arange(0, flights[-1].end - 0.02, 1e-3)
+    noise = np.random.default_rng([3, seed]).standard_normal(len(times))
+    gap, velocity = film(flights, times)
+    told = 12 * d - gap - 5e-6 * noise if quantity == "gap" else -(velocity + 1e-3 * noise) / slow
+    found = doubts(as_track(slow * times, told, quantity), c)
+    assert [doubt.name for doubt in found] == ["direction", "clock"]
+    right = as_track(slow * times, 12 * d - told if quantity == "gap" else -told, quantity)
+    assert "direction" not in names(right, c)
+
+
 def test_a_sphere_that_rises_to_a_ceiling_is_not_doubted():
     """Lighter than the liquid, the gap counted from the ceiling: it falls upwards, by the same equation."""
     c = changed(STEEL_IN_OIL, sphere={"density": 50 / 7800})
