@@ -51,8 +51,8 @@ class Layout:
     lines: Sequence[str] = field(default=(), repr=False)
     odd: frozenset[str] = field(default=frozenset(), repr=False)
     """All cells that are no plain numbers, each once."""
-    sheet: str = ""
-    """Which sheet of a spreadsheet it is."""
+    kept: str = ""
+    """How it was kept where that was no text: "JSON", which sheet of a spreadsheet."""
 
     @property
     def body(self) -> list[Row]:
@@ -65,7 +65,7 @@ def layout_of(
     file: str,
     decimal: Decimal | None = None,
     only: Sequence[int] | None = None,
-    sheet: str = "",
+    kept: str = "",
 ) -> Layout:
     """Cut the lines of a file, or ``only`` those of these numbers; ``decimal`` overrides what its numbers say."""
     plain_lines, comments = [], []
@@ -82,7 +82,7 @@ def layout_of(
     rows = _cut(plain_lines, separator, file, known)
     width = _width([row.cells for row in rows[-_SAMPLE:]])[0]
     odd = frozenset(cell for cell in known.values() if not NUMBER.fullmatch(cell))
-    layout = Layout(file, separator, rows, comments, width, vectors=vectors, lines=lines, odd=odd, sheet=sheet)
+    layout = Layout(file, separator, rows, comments, width, vectors=vectors, lines=lines, odd=odd, kept=kept)
     layout.decimal = decimal or _decimal(layout)
     return layout
 

@@ -43,7 +43,7 @@ class Section:
     def layout(self, of: Layout) -> Layout:
         """Its own layout, lines counted as in the whole file."""
         own = (n for n in range(max(self.begin, self.head), self.end) if n not in self.repeated)
-        return layout_of(of.lines[: self.end - 1], of.file, of.decimal, [*range(1, self.head), *own], of.sheet)
+        return layout_of(of.lines[: self.end - 1], of.file, of.decimal, [*range(1, self.head), *own], of.kept)
 
 
 @dataclass(frozen=True)

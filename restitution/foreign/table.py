@@ -10,7 +10,7 @@ from pathlib import Path
 from restitution.errors import Defect, InputError
 from restitution.foreign import programs
 from restitution.foreign.file_text import lines_of, mistaken
-from restitution.foreign.formats import arrays, digitised, hdf5, kinds, markup, openptv, stopwatch
+from restitution.foreign.formats import digitised, hdf5, json_table, kinds, markup, openptv, stopwatch
 from restitution.foreign.formats.spots import Read, Spots
 from restitution.foreign.heading import Heading, data_rows, heading_of, unit_in, without_unit
 from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
@@ -164,18 +164,18 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
         return _of_spots(file, hdf5.spots(data, file))
     if digitised.is_project(path):
         return _of_curves(path)
-    text, sheet = kinds.text_in(data, file)
+    text, kept = kinds.text_in(data, file)
     if (stripped := text.strip())[:1] == "{" or (
         stripped[:1] == "[" and stripped[-1:] == "]"
     ):  # a unit may begin it
-        text = arrays.text_of_json(text.encode(), file) or text
+        text, kept = json_table.text_of_json(text.encode(), file), "JSON"
     if markup.is_markup(text):
         return _of_spots(file, markup.spots(text, file))
     lines = lines_of(text, file)
     for known, read, program in kinds.BLOCKS:
         if known(lines):
             return _of_blocks(file, read(lines, file), program)
-    layout = layout_of(lines, file, decimal, sheet=sheet)
+    layout = layout_of(lines, file, decimal, kept=kept)
     parts = sections(layout)
     if len(parts) < 2:
         return _of_layout(parts[0].layout(layout) if parts else layout)
@@ -284,8 +284,8 @@ def _rows(rows: list[Row], columns: list[int], layout: Layout, file: str) -> lis
 def _form(layout: Layout, heading: Heading) -> str:
     """How the file is written, where it is not as the project's own tables are."""
     words = []
-    if layout.sheet:
-        words.append(layout.sheet)
+    if layout.kept:
+        words.append(layout.kept)
     elif layout.separator != ",":
         words.append("columns separated by " + SEPARATORS[layout.separator])
     if layout.decimal == ",":

@@ -2,7 +2,8 @@
 
 :mod:`~restitution.foreign.formats.kinds` knows them; :mod:`~restitution.foreign.formats.workbook` (spreadsheets;
 :mod:`~restitution.foreign.formats.spreadsheet_cells`, :mod:`~restitution.foreign.formats.excel_2003`) and
-:mod:`~restitution.foreign.formats.arrays` (NumPy, MATLAB, JSON) give text;
+:mod:`~restitution.foreign.formats.arrays` (NumPy, MATLAB) and :mod:`~restitution.foreign.formats.json_table`
+give text;
 :mod:`~restitution.foreign.formats.blocks` (many small tables below each other),
 :mod:`~restitution.foreign.formats.zones` (files for plots, LabVIEW's measurements),
 :mod:`~restitution.foreign.formats.openptv` (a file a frame),

@@ -1,4 +1,4 @@
-"""Numbers kept as arrays: NumPy's .npy, workspaces of MATLAB, JSON of lists or of records, as text.
+"""Numbers kept as arrays: NumPy's .npy, workspaces of MATLAB, as text.
 
 What is written out has a line of names where there are any, then a row a line, as if saved as text. Of a workspace
 are taken the arrays as long as the longest; tracks of u-track (``tracksFinal``) are rows of track, frame, x, y.
@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from restitution.errors import Defect, InputError
-from restitution.inputs import json_of
 
 NUMPY, MATLAB = b"\x93NUMPY", b"MATLAB 5.0"
 _WIDEST = 200
@@ -30,26 +29,6 @@ def is_array(data: bytes) -> bool:
 def text_of_array(data: bytes, file: str) -> str:
     """Its numbers as text; raises :class:`InputError` where it holds no table of numbers."""
     return _numpy(data, file) if data.startswith(NUMPY) else _matlab(data, file)
-
-
-def text_of_json(data: bytes, file: str) -> str | None:
-    """A table in JSON as text: lists by name, records, or rows; None where it is none."""
-    content = json_of(data, file)
-    if isinstance(content, dict):
-        columns = {k: v for k, v in content.items() if isinstance(v, list) and not any(map(_nested, v))}
-        longest = max(map(len, columns.values()), default=0)
-        kept = {name: values for name, values in columns.items() if len(values) == longest > 1}
-        return _text(list(kept), list(zip(*kept.values(), strict=True))) if len(kept) > 1 else None
-    if isinstance(content, list) and content and all(isinstance(row, dict) for row in content):
-        names = [name for name in content[0] if not _nested(content[0][name])]
-        return _text(names, [[row.get(name) for name in names] for row in content]) if len(names) > 1 else None
-    if isinstance(content, list) and content and all(isinstance(row, list) for row in content):
-        return _text([], content) if len(content[0]) > 1 else None
-    return None
-
-
-def _nested(value: Any) -> bool:
-    return isinstance(value, list | dict)
 
 
 def _text(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:

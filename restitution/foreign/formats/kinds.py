@@ -27,10 +27,12 @@ BLOCKS: tuple[tuple[Callable[[list[str]], bool], Callable[[list[str], str], Read
 
 
 def text_in(data: bytes, file: str) -> tuple[str, str]:
-    """The text in the bytes of a file, written out where they are a spreadsheet or an array; of which sheet."""
+    """The text in the bytes of a file, written out where they are a spreadsheet or an array; how they keep it."""
     if workbook.is_workbook(data):
         return workbook.text_of_sheet(data, file)
-    return arrays.text_of_array(data, file) if arrays.is_array(data) else text_of(data, file), ""
+    if arrays.is_array(data):
+        return arrays.text_of_array(data, file), "an array"
+    return text_of(data, file), ""
 
 
 def read_lines(path: str | Path) -> list[str]:

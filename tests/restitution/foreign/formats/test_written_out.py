@@ -1,7 +1,6 @@
-"""What is written out as text before it is read: arrays of NumPy, MATLAB and JSON."""
+"""What is written out as text before it is read: arrays of NumPy and MATLAB."""
 
 import contextlib
-import json
 
 import h5py
 import numpy as np
@@ -63,26 +62,6 @@ def test_tracks_of_u_track(tmp_path):
     assert table.header == ["track", "frame", "x", "y"]
     assert [cells[1] for _, cells in table.rows] == ["3", "4", "5", "6"]
     assert [cells[3] for _, cells in table.rows] == ["5.0", "nan", "2.5", "3.125"]
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        {"t": TIMES, "y": HEIGHTS, "fps": 500, "sizes": [1, 2]},
-        [{"t": t, "y": y, "box": [1, 2]} for t, y in ROWS],
-    ],
-)
-def test_lists_and_records_in_json(tmp_path, content):
-    (tmp_path / "track.json").write_text(json.dumps(content))
-    table = read_foreign(tmp_path / "track.json")
-    assert table.header == ["t", "y"]
-    assert [[float(cell) for cell in cells] for _, cells in table.rows] == [list(row) for row in ROWS]
-
-
-def test_json_that_is_no_table(tmp_path):
-    (tmp_path / "track.json").write_text('{"a": {"b": 1}}')
-    with pytest.raises(InputError, match="JSON, no table"):
-        read_foreign(tmp_path / "track.json")
 
 
 def test_units_in_brackets_are_no_json(tmp_path):
