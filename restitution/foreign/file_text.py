@@ -17,7 +17,33 @@ from restitution.units import NAMES_BEYOND_ASCII
 _BINARY = {
     b"PK\x03\x04": "is an archive, no text; save the table as CSV",
     b"\x89HDF": "is HDF5, no text; export the table as CSV",  # of tracks: :mod:`.formats.hdf5`
+    b"PAR1": "is Parquet, no text; save it as CSV: pandas.read_parquet(FILE).to_csv(CSV)",
+    **dict.fromkeys(
+        (b"ARROW1", b"FEA1"), "is Feather, no text; save it as CSV: pandas.read_feather(FILE).to_csv(CSV)"
+    ),
+    **dict.fromkeys(
+        (b"\x80\x04", b"\x80\x05"), "is a pickle of Python, which is not opened; save the table as CSV"
+    ),
+    b"SQLite format 3": "is a database, no text; save the table as CSV",
+    **dict.fromkeys((b"RDX2", b"RDX3", b"X\n\0"), "is a workspace of R, no text; save the table by write.csv"),
+    **dict.fromkeys(
+        (
+            b"RIFF",
+            b"\x1aE\xdf\xa3",
+            b"\0\0\0\x14ftyp",
+            b"\0\0\0\x18ftyp",
+            b"\0\0\0\x1cftyp",
+            b"\0\0\0\x20ftyp",
+            b"CI\x2c\0",
+        ),
+        "is a film; track the sphere in it first, with Tracker, TrackMate or trackpy",
+    ),
+    **dict.fromkeys(
+        (b"\x89PNG", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"GIF8", b"%PDF"),
+        "is a picture; its points have to be digitised, with WebPlotDigitizer, or the sphere tracked",
+    ),
 }
+"""How files begin that are no text, and what to do with them."""
 
 
 WESTERN = "cp1252"
@@ -39,7 +65,9 @@ def text_of(data: bytes, file: str) -> str:
     text = _decoded(data, file)
     if "\0" in text:
         row = text[: text.index("\0")].count("\n") + 1
-        raise InputError(Defect("has a NUL byte", file=file, row=row))
+        raise InputError(
+            Defect("has a NUL byte: is it a binary file? Export the table as CSV", file=file, row=row)
+        )
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from restitution.errors import Defect, InputError
 from restitution.foreign.file_text import mistaken
-from restitution.foreign.layout import SEPARATORS, Layout, Row, split
+from restitution.foreign.layout import Layout, Row, cuts, split, vector_names
 from restitution.foreign.number_text import is_lost, is_number
 from restitution.foreign.programs import program_of
 from restitution.units import UnitError, quantity
@@ -63,8 +63,10 @@ def heading_of(layout: Layout) -> Heading:
     for at in range(len(above) - 1, -1, -1):
         line, cells = above[at]
         if layout.vectors:
-            cells = next(iter(_vector_names(layout.lines[line - 1], layout)), cells)
+            cells = next(iter(vector_names(layout.lines[line - 1], layout)), cells)
         placed = _placed(cells, width, filled)
+        if placed is None and data:
+            placed = _beside_row_names(cells, line, data[0], layout)
         if placed is None and layout.separator == " ":
             placed = _of_words(layout.lines[line - 1], width)
         if placed is None or not are_words(placed):
@@ -84,7 +86,7 @@ def heading_of(layout: Layout) -> Heading:
         break
     else:
         units = _from_comments(heading, layout, width, filled, data[0].line if data else len(layout.lines) + 1)
-    if heading.line is None and above:
+    if heading.line is None and above and not _are_settings([cells for _, cells in above]):
         _refuse(layout, above[-1], width)
     heading.names = {i: name for i, name in heading.names.items() if name or i in filled}
     heading.units = {i: unit for i, name in heading.names.items() if (unit := unit_in(name))} | units
@@ -162,6 +164,21 @@ def _of_words(text: str, width: int) -> dict[int, str] | None:
     return dict(enumerate(apart)) if len(apart) == width > 1 else None
 
 
+def _beside_row_names(cells: list[str], line: int, first: Row, layout: Layout) -> dict[int, str] | None:
+    """Names by column where the rows have names of their own, above which there is none: R quotes these, pandas
+    leaves room above them.
+    """
+    head, body = layout.lines[line - 1], layout.lines[first.line - 1]
+    apart = body.lstrip().startswith('"') or (layout.separator == " " and head[:1].isspace())
+    short = len(cells) == layout.width - 1 == len(first.cells) - 1
+    return dict(enumerate(["", *cells])) if apart and short and all(cells) else None
+
+
+def _are_settings(above: list[list[str]]) -> bool:
+    """Whether all lines are a name and its value, some of these numbers, as of Qualisys: none names columns."""
+    return all(len(cells) == 2 for cells in above) and sum(is_number(cells[1]) for cells in above) > 1
+
+
 def _is_whole(cells: list[str], width: int, filled: list[int]) -> bool:
     """Whether a line has a word for each column that has any content."""
     placed = _placed(cells, width, filled)
@@ -223,34 +240,6 @@ def _names_in(text: str, layout: Layout, width: int, filled: list[int]) -> dict[
     return None
 
 
-def cuts(text: str, layout: Layout) -> list[list[str]]:
-    """Ways to cut a comment into names, the separator of the data first; brackets stay with their word."""
-    if layout.vectors:
-        return _vector_names(text, layout)
-    together = re.sub(r"\s+([(\[])", r"\1", text)
-    wide = [re.split(r"\s{2,}", text.strip())] if layout.separator == " " else []  # names of several words
-    ways = [layout.separator, *(s for s in SEPARATORS if s != layout.separator)]
-    cuts = [split(line, separator) for separator in ways for line in (text, together)]
-    return [
-        cells for cells in (*cuts[:2], *wide, *cuts[2:]) if len(cells) > 1 and not cells[0].endswith((",", ";"))
-    ]
-
-
-def _vector_names(text: str, layout: Layout) -> list[list[str]]:
-    """Names of a row of vectors: "position" over (1 2 3) becomes position_x, position_y, position_z."""
-    groups = re.findall(r"\([^()]*\)|[^\s()]+", next(line for line in reversed(layout.lines) if line.strip()))
-    sizes = [len(group.strip("()").split()) for group in groups]
-    words = re.findall(r"\([^()]*\)|[^\s()]+", text)
-    words = ["Time", *words[1:]] if words[:1] == ["Probe"] else words
-    if len(words) != len(sizes):
-        return []
-    names: list[str] = []
-    for word, size in zip(words, sizes, strict=True):
-        parts = word.strip("()").split()
-        names += parts if len(parts) == size else [f"{word}_{axis}" for axis in "xyzabcdef"[:size]]
-    return [names]
-
-
 def _with_tracks(names: dict[int, str], above: list[list[str]]) -> dict[int, str]:
     """Names of columns under those of tracks, the nearest line first, until no name stands for two columns.
 
@@ -291,7 +280,8 @@ def unit_of(text: str) -> str:
     bare = bare.strip("()[]").strip().removesuffix(".")
     if not bare.isascii() and not _is_quantity(bare):  # two letters do not tell the code page of a file
         bare = next((known for known in mistaken(bare) if not known.isascii() and _is_quantity(known)), bare)
-    return FRAMES.get(bare.lower(), bare)
+    low = bare.lower()
+    return FRAMES.get(low) or (low if len(low) > 3 and not _is_quantity(bare) and _is_quantity(low) else bare)
 
 
 def _refuse(layout: Layout, last: tuple[int, list[str]], width: int) -> None:

@@ -28,6 +28,8 @@ _SEPARATOR_LINE = re.compile(r'"?sep=.{0,2}"?', re.IGNORECASE)
 _WORD = re.compile(r'"[^"]*"|\S+')
 _BRACKETS = re.compile(r"[()]")
 _VECTOR = re.compile(r"\([^()]*\)")
+_IN_CELL = re.compile(r"[(\[]\s*([^()\[\]]*?)\s*[)\]]")
+_OF_NUMPY = re.compile(r"(?:np|numpy)\.\w+\(([^()]*)\)")
 
 
 class Row(NamedTuple):
@@ -92,6 +94,34 @@ def split(line: str, separator: str) -> list[str]:
     if separator == " ":
         return [word.strip('"') for word in _WORD.findall(line)]
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
+
+
+def cuts(text: str, layout: Layout) -> list[list[str]]:
+    """Ways to cut a comment into names, the separator of the data first; brackets stay with their word."""
+    if layout.vectors:
+        return vector_names(text, layout)
+    together = re.sub(r"\s+([(\[])", r"\1", text)
+    wide = [re.split(r"\s{2,}", text.strip())] if layout.separator == " " else []  # names of several words
+    ways = [layout.separator, *(s for s in SEPARATORS if s != layout.separator)]
+    cuts = [split(line, separator) for separator in ways for line in (text, together)]
+    return [
+        cells for cells in (*cuts[:2], *wide, *cuts[2:]) if len(cells) > 1 and not cells[0].endswith((",", ";"))
+    ]
+
+
+def vector_names(text: str, layout: Layout) -> list[list[str]]:
+    """Names of a row of vectors: "position" over (1 2 3) becomes position_x, position_y, position_z."""
+    groups = re.findall(r"\([^()]*\)|[^\s()]+", next(line for line in reversed(layout.lines) if line.strip()))
+    sizes = [len(group.strip("()").split()) for group in groups]
+    words = re.findall(r"\([^()]*\)|[^\s()]+", text)
+    words = ["Time", *words[1:]] if words[:1] == ["Probe"] else words
+    if len(words) != len(sizes):
+        return []
+    names: list[str] = []
+    for word, size in zip(words, sizes, strict=True):
+        parts = word.strip("()").split()
+        names += parts if len(parts) == size else [part_of(word, k, size) for k in range(size)]
+    return [names]
 
 
 def _all_vectors(lines: Sequence[tuple[int, str]]) -> bool:
@@ -166,3 +196,32 @@ def _decimal(layout: Layout) -> Decimal:
 def _beside_numbers(row: Row, cell: str) -> bool:
     """Whether the other cells of a row are numbers, so that this one is meant to be."""
     return all(is_number(other) or is_lost(other) or has_thousands(other) for other in row.cells if other != cell)
+
+
+def vectors_apart(
+    names: list[str], rows: list[tuple[int, list[str]]]
+) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Columns of vectors, "(320, 456.25)" or "[320. 456.25]" as Python prints them, as one for each number."""
+    for at in reversed(range(len(names))):
+        cells = [row[at] for _, row in rows if len(row) == len(names)]
+        if len(cells) < len(rows) or not (told := [cell for cell in cells if not is_lost(cell)]):
+            continue
+        width = len(_numbers_in(told[0]))
+        if width < 2 or any(len(_numbers_in(cell)) != width for cell in told):
+            continue
+        lost = [""] * width
+        rows = [(line, [*row[:at], *(_numbers_in(row[at]) or lost), *row[at + 1 :]]) for line, row in rows]
+        names = [*names[:at], *(part_of(names[at], k, width) for k in range(width)), *names[at + 1 :]]
+    return names, rows
+
+
+def part_of(name: str, k: int, width: int) -> str:
+    """The column of a vector's ``k``-th number: _x, _y, _z where there are no more, else by number."""
+    return f"{name}_{'xyz'[k] if width <= 3 else k + 1}"
+
+
+def _numbers_in(cell: str) -> list[str]:
+    """The numbers of a vector; none where the cell is another thing."""
+    match = _IN_CELL.fullmatch(_OF_NUMPY.sub(r"\1", cell.strip())) if cell[:1] in ("(", "[") else None
+    parts = re.split(r"\s*[,;]\s*|\s+", match[1]) if match else []
+    return parts if all(map(is_number, parts)) else []

@@ -17,8 +17,8 @@ from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
 
-from restitution.foreign.heading import are_units, are_words, cuts, numeric_columns
-from restitution.foreign.layout import Layout, Row, layout_of
+from restitution.foreign.heading import are_units, are_words, numeric_columns
+from restitution.foreign.layout import Layout, Row, cuts, layout_of
 from restitution.foreign.number_text import is_lost, is_number, plain
 
 _LONGEST = 40

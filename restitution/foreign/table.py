@@ -13,7 +13,7 @@ from restitution.foreign.file_text import lines_of, mistaken
 from restitution.foreign.formats import digitised, hdf5, json_table, kinds, markup, openptv, stopwatch
 from restitution.foreign.formats.spots import Read, Spots
 from restitution.foreign.heading import Heading, data_rows, heading_of, unit_in, without_unit
-from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of
+from restitution.foreign.layout import SEPARATORS, Layout, Row, layout_of, vectors_apart
 from restitution.foreign.number_text import Decimal, decimal_of, is_lost, plain, seconds
 from restitution.foreign.programs import Program
 from restitution.foreign.sections import Section, sections
@@ -195,6 +195,7 @@ def _of_layout(layout: Layout) -> ForeignTable:
         heading.names = {i: program.renamed(name) for i, name in heading.names.items()}
     names = list(heading.names.values())
     rows = _rows(data_rows(layout, heading), list(heading.names), layout, file)
+    names, rows = vectors_apart(names, rows)
     units = {heading.names[i]: unit for i, unit in heading.units.items() if i in heading.names}
     clocks = [
         i for i in heading.names if (first := data_rows(layout, heading)[:1]) and seconds(_cell(first[0], i))
@@ -228,7 +229,8 @@ def _program(layout: Layout, heading: Heading) -> Program | None:
 def _of_spots(file: str, found: Spots) -> ForeignTable:
     rows = [(row.line, row.cells) for row in found.rows]
     form = found.program.name if found.program is not None else "HDF5"
-    return ForeignTable(file, found.names, rows, found.units, found.program, form=form)
+    units = {name: unit for name in found.names if (unit := unit_in(name))} | found.units
+    return ForeignTable(file, found.names, rows, units, found.program, form=form)
 
 
 def _of_curves(path: str | Path) -> ForeignTable:

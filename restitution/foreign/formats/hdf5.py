@@ -35,6 +35,8 @@ _MOST_ARRAYS = 100
 _MOST_NAMES = 2**16
 _TABLES = 2**17
 """Groups that are looked at: one a frame."""
+_NONE = "N."
+"""A pickle of the name that an index has not."""
 _DAMAGED = (
     OSError, KeyError, ValueError, RuntimeError, TypeError, IndexError, AttributeError, EOFError, OverflowError,
     pickle.UnpicklingError, UnicodeError,
@@ -126,7 +128,9 @@ def _tables(root: h5py.File) -> Iterable[tuple[str, Any]]:
 
 
 def _columns(group: h5py.Group) -> tuple[list[str], list[NDArray]]:
-    """Names and columns of one table; the index is DeepLabCut's frames, whose columns are named on levels."""
+    """Names and columns of one table; an index of floats, as times are, is one, that of DeepLabCut's frames, whose
+    columns are named on levels, too.
+    """
     if "table" in group:
         table = group["table"]
         content, found = _array(table), dict[Any, NDArray]()
@@ -145,6 +149,10 @@ def _columns(group: h5py.Group) -> tuple[list[str], list[NDArray]]:
     if any(isinstance(label, tuple) for label in found):
         # the scorer, who is the same for all, is left out
         return ["coords", *("/".join(map(str, label[1:])) for label in found)], [index, *found.values()]
+    named = _text(group["axis1"].attrs.get("name", "")) if "axis1" in group else ""
+    named = "index" if named in ("", _NONE) else named
+    if index.dtype.kind == "f" and named not in found:
+        found = {named: index, **found}
     return [f"{label}" for label in found], list(found.values())
 
 

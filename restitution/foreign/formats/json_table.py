@@ -8,7 +8,7 @@ A table is looked for from the outside in. It is, in this order,
 - a list of records, likewise; of records that have a table each (tracks of points, frames of objects), with what
   else the record says beside each of its rows; or a list of rows.
 
-Short lists of numbers are vectors: ``"pos": [1, 2]`` has pos_1 and pos_2.
+Short lists of numbers are vectors: ``"pos": [1, 2]`` has pos_x and pos_y.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from restitution.errors import Defect, InputError
+from restitution.foreign.layout import part_of
 from restitution.foreign.number_text import is_number
 from restitution.foreign.programs import PARTICLES
 from restitution.inputs import json_of
@@ -135,7 +136,7 @@ def _of_columns(node: dict[str, Any]) -> _Table | None:
     found: dict[str, list[Any]] = {}
     for name, value in _leaves(node):
         if isinstance(value, list) and (width := _width(value)):
-            found |= {_numbered(name, k, width): [_at(x, k) for x in value] for k in range(width)}
+            found |= {_named(name, k, width): [_at(x, k) for x in value] for k in range(width)}
     longest = max(map(len, found.values()), default=0)
     columns = {name: values for name, values in found.items() if len(values) == longest > 1}
     if not 1 < len(columns) <= _WIDEST:
@@ -186,7 +187,7 @@ def _of_records(records: list[dict[str, Any]]) -> _Table | None:
     getters: list[tuple[str, int]] = []
     for name in dict.fromkeys(name for record in flat for name in record):
         width = _width([value for record in flat if (value := record.get(name)) is not None])
-        names += [_numbered(name, k, width) for k in range(width)]
+        names += [_named(name, k, width) for k in range(width)]
         getters += [(name, k) for k in range(width)]
     if not 1 < len(names) <= _WIDEST:
         return None
@@ -212,8 +213,8 @@ def _width(values: list[Any], most: int = _VECTOR) -> int:
     return widths.pop() if len(widths) == 1 and flat and max(widths) <= most else 0
 
 
-def _numbered(name: str, k: int, width: int) -> str:
-    return name if width == 1 else f"{name}_{k + 1}"
+def _named(name: str, k: int, width: int) -> str:
+    return name if width == 1 else part_of(name, k, width)
 
 
 def _at(value: Any, k: int) -> Any:

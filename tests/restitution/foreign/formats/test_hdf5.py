@@ -158,3 +158,19 @@ def test_small_files_of_much_memory_are_refused_before_it_is_taken(tmp_path, wri
         assert tracemalloc.get_traced_memory()[1] < 5e7
     finally:
         tracemalloc.stop()
+
+
+@pytest.mark.parametrize("name", [b"time", b"N."])
+def test_times_in_the_index_are_a_column(tmp_path, name):
+    """As ``frame.set_index("time").to_hdf`` keeps them; N. is the pickle of no name."""
+    times = 0.004 * np.arange(len(Y))
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        group = file.create_group("track")
+        group.attrs["nblocks"] = 1
+        group["axis1"] = times
+        group["axis1"].attrs["name"] = np.bytes_(name)
+        group["block0_items"], group["block0_values"] = np.array([b"height_mm"]), Y[:, None]
+    table = read_foreign(tmp_path / "a.h5")
+    assert table.header == ["time" if name == b"time" else "index", "height_mm"]
+    assert table.units == {"height_mm": "mm"}
+    np.testing.assert_allclose([[float(x) for x in cells] for _, cells in table.rows], np.c_[times, Y])

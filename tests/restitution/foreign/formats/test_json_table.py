@@ -60,9 +60,9 @@ def test_times_in_the_index_of_pandas(tmp_path, orient):
     ("content", "name"),
     [
         ([{"t": t, "pos": {"x": 1.0, "y": y}, "box": [[0, 0], [1, 1]]} for t, y in ROWS], "pos.y"),
-        ([{"t": t, "pos": [1.0, y]} for t, y in ROWS], "pos_2"),
+        ([{"t": t, "pos": [1.0, y]} for t, y in ROWS], "pos_y"),
         ({"t": TIMES, "pos": {"x": HEIGHTS, "y": HEIGHTS}}, "pos.y"),
-        ({"t": TIMES, "pos": [[1.0, y] for y in HEIGHTS]}, "pos_2"),
+        ({"t": TIMES, "pos": [[1.0, y] for y in HEIGHTS]}, "pos_y"),
     ],
 )
 def test_objects_and_vectors_are_columns(tmp_path, content, name):
