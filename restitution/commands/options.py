@@ -13,7 +13,7 @@ _MOST_DIGITS = 9
 _TRACK_COLUMNS = {"time_s": "time", "gap_m": "position", "velocity_m_s": "velocity"}
 
 
-TRACK = ("settings", "unit", "time_unit", "fps", "pixel", "direction", "wall", "point", "particle")
+TRACK = ("settings", "unit", "time_unit", "fps", "pixel", "direction", "wall", "point", "particle", "sheet")
 """What :func:`add_track` declares."""
 
 
@@ -53,6 +53,7 @@ def add_track(parser: argparse.ArgumentParser, several: bool = False) -> None:
     )
     group.add_argument("--point", choices=("lowest", "centre"), help="whose position it is, of the sphere's")
     group.add_argument("--particle", metavar="ID", help="which particle or track, where the file has several")
+    group.add_argument("--sheet", metavar="NAME", help="which sheet of a spreadsheet, where several have a table")
 
 
 def add_strict(parser: argparse.ArgumentParser) -> None:
@@ -98,6 +99,7 @@ def stated_by(args: argparse.Namespace) -> Settings:
         wall=args.wall,
         point=args.point,
         particle=args.particle,
+        sheet=args.sheet,
         **columns,
     )
 

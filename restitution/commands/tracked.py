@@ -117,7 +117,7 @@ def opened(args: argparse.Namespace) -> Opened:
         return Opened(settings)
     if (long := read_long_track(args.track, settings)) is not None:
         return Opened(settings, long)
-    return Opened(settings, table=read_foreign(args.track, settings.decimal))
+    return Opened(settings, table=read_foreign(args.track, settings.decimal, settings.sheet))
 
 
 def read(args: argparse.Namespace, file: Opened, without_conditions: bool = False) -> Tracked:

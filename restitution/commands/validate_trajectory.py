@@ -56,7 +56,7 @@ def check(args: argparse.Namespace) -> None:
         raise InputError(*(Defect(rule, field=f"--{name.replace('_', '-')}") for name in without))
 
 
-_TRACK = ("settings", "unit", "time_unit", "fps", "pixel", "direction", "wall", "point", "particle")
+_TRACK = ("settings", "unit", "time_unit", "fps", "pixel", "direction", "wall", "point", "particle", "sheet")
 """Options of a track (:func:`restitution.commands.options.add_track`)."""
 
 

@@ -51,7 +51,7 @@ def flight_of(run: Run, conditions: Conditions, settings: Settings, camera: Trac
     Raises :class:`InputError` for a trajectory that cannot be read or does not bounce.
     """
     try:
-        table = read_foreign(str(run.track), settings.decimal)
+        table = read_foreign(str(run.track), settings.decimal, settings.sheet)
         track = read_track(table, settings, conditions).track()
         return flown(run.name, track, conditions, camera)
     except InputError as error:

@@ -34,6 +34,7 @@ class Settings(Record):
     ``unit``: "mm", "px", "0.3 mm", "d". ``frames_per_second`` and ``pixel`` say what a frame and a pixel are.
     ``direction``: "up" where positions and velocities grow away from the wall. ``wall``: where the wall is, in the
     unit of the positions, or "rest": where the sphere comes to rest. ``point``: whose position it is.
+    ``sheet``: which one of a spreadsheet.
     ``release``: the gap from which the sphere was let go at rest, as "25.3 mm", for a fit to whole trajectories.
     """
 
@@ -52,6 +53,7 @@ class Settings(Record):
     point: Literal["lowest", "centre"] | None = None
     release: Text | None = None
     decimal: Decimal | None = None
+    sheet: Text | None = None
 
     def over(self, other: Settings) -> Settings:
         """These, and the ``other`` ones where these say nothing."""
@@ -176,5 +178,6 @@ TEMPLATE = """\
 # wall = 812                 # where the wall is, in the unit of positions; "rest": where the sphere comes to rest
 # release = "25.3 mm"        # gap from which it was let go at rest, for fit --trajectory
 # point = "centre"           # positions are those of the centre, d/2 above the lowest point ("lowest")
+# sheet = "Run 1"            # which sheet of a spreadsheet, where several have a table
 # decimal = ","              # the decimal sign, where the numbers leave it open
 """

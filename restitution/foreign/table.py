@@ -145,13 +145,14 @@ class ForeignTable:
 
 
 @lists_only()
-def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTable:
+def read_foreign(path: str | Path, decimal: Decimal | None = None, sheet: str | None = None) -> ForeignTable:
     """The table of numbers in a file, however it is written.
 
     Parameters
     ----------
     path : a table of text: commas, semicolons, tabs or spaces between columns; dumps, logs and XML of programs.
     decimal : the decimal sign, where the numbers leave it open.
+    sheet : the name of the sheet of a spreadsheet, where several have a table.
 
     Raises
     ------
@@ -164,7 +165,7 @@ def read_foreign(path: str | Path, decimal: Decimal | None = None) -> ForeignTab
         return _of_spots(file, hdf5.spots(data, file))
     if digitised.is_project(path):
         return _of_curves(path)
-    text, kept = kinds.text_in(data, file)
+    text, kept = kinds.text_in(data, file, sheet)
     if (stripped := text.strip())[:1] == "{" or (
         stripped[:1] == "[" and stripped[-1:] == "]"
     ):  # a unit may begin it

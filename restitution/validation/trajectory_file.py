@@ -46,7 +46,7 @@ def read_trajectory(
             raise InputError(Defect("does not exist, and no shipped record has this name", file=str(file)))
         return Trajectory(datasets.load_track(str(file)))
     own, shared = own or Settings(), shared or Settings()
-    table = read_foreign(file, own.decimal or shared.decimal)
+    table = read_foreign(file, own.decimal or shared.decimal, own.sheet or shared.sheet)
     shared, notes = left_open(table, shared)
     settings, taken = of_header(table, own.over(shared))
     found = read_track(table, settings, conditions)

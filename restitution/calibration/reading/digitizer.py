@@ -23,14 +23,16 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def is_export(path: str | Path, decimal: Decimal | None = None, columns_given: bool = False) -> bool:
+def is_export(
+    path: str | Path, decimal: Decimal | None = None, columns_given: bool = False, sheet: str | None = None
+) -> bool:
     """Whether a file is an export: JSON, or CSV of two columns without names, or with X and Y under names, or of
     curves below one another or side by side over one x, unless the caller says what its columns are.
     """
     if is_project(path):
         return True
     try:
-        layout = layout_of(read_lines(path), str(path), decimal)
+        layout = layout_of(read_lines(path, sheet), str(path), decimal)
     except InputError:
         return False  # markup, HDF5: tracks, or for their reader to refuse
     rows = layout.rows
@@ -42,9 +44,11 @@ def is_export(path: str | Path, decimal: Decimal | None = None, columns_given: b
     return numbers or (len(rows) > 1 and _is_axes(rows[1].cells))
 
 
-def read_export(path: str | Path, axes: tuple[str, str], decimal: Decimal | None = None) -> pd.DataFrame:
+def read_export(
+    path: str | Path, axes: tuple[str, str], decimal: Decimal | None = None, sheet: str | None = None
+) -> pd.DataFrame:
     """A table with columns ``source`` (the data set) and those that x and y are, errors where pixels tell them."""
-    return _read_project(path, axes) if is_project(path) else _read_csv(path, axes, decimal)
+    return _read_project(path, axes) if is_project(path) else _read_csv(path, axes, decimal, sheet)
 
 
 def bars_left_out(path: str | Path) -> int:
@@ -74,10 +78,10 @@ def _is_axes(cells: list[str]) -> bool:
     return len(cells) >= 2 and [c.upper() for c in cells] == ["X", "Y"] * (len(cells) // 2)
 
 
-def _read_csv(path: str | Path, axes: tuple[str, str], decimal: Decimal | None) -> pd.DataFrame:
+def _read_csv(path: str | Path, axes: tuple[str, str], decimal: Decimal | None, sheet: str | None) -> pd.DataFrame:
     import pandas as pd
 
-    layout = layout_of(read_lines(path), str(path), decimal)
+    layout = layout_of(read_lines(path, sheet), str(path), decimal)
     if below := _curves(layout):
         return pd.concat([_points([name], data_rows(of, heading_of(of)), axes, of) for name, of in below])
     if names := _over_one_x(layout):

@@ -76,9 +76,9 @@ def _read_one(path: str, how: Reading) -> Observations:
             conditions = how.conditions or resource.conditions
             return from_track(datasets.load_track(path), conditions, how, path, digest)
         raise InputError(Defect("does not exist, and no shipped record has this name", file=path))
-    if is_export(path, how.track.decimal, bool(how.columns)):
+    if is_export(path, how.track.decimal, bool(how.columns), how.track.sheet):
         return _from_export(path, how, _digest(path))
-    foreign = read_foreign(path, how.track.decimal)
+    foreign = read_foreign(path, how.track.decimal, how.track.sheet)
     if is_track(foreign, how.settings):
         return from_track_file(foreign, how, _digest(path))
     _known_columns(dict.fromkeys(how.columns, "--column"))
@@ -111,7 +111,8 @@ def _own_names(header: Sequence[str]) -> dict[str, str]:
 def _from_export(path: str, how: Reading, digest: str) -> Observations:
     """The points of a digitised plot, each data set a source."""
     _known_columns(dict(zip(how.axes, ("--x", "--y"), strict=True)))
-    points = from_table(read_export(path, how.axes, how.track.decimal), replace(how, columns={}), path, digest)
+    table = read_export(path, how.axes, how.track.decimal, how.track.sheet)
+    points = from_table(table, replace(how, columns={}), path, digest)
     if not is_project(path):
         return points
     note = f"{path}: errors are those of a click, {PIXEL:g} pixel; those of the measurement are in the scatter"

@@ -94,7 +94,7 @@ def read_recordings(paths: Sequence[str], how: Reading) -> list[Recording]:
 def read_recording(path: str, how: Reading) -> Recording:
     """One record: a file, or a shipped one by its name."""
     if Path(path).exists():
-        table = read_foreign(path, how.track.decimal)
+        table = read_foreign(path, how.track.decimal, how.track.sheet)
         if not is_track(table, how.settings):
             raise InputError(what_is_needed(table, how.settings))
         track, conditions, notes = track_of(table, how)

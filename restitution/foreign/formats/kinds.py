@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from restitution.errors import Defect, InputError
 from restitution.foreign import programs
 from restitution.foreign.file_text import lines_of, text_of
 from restitution.foreign.formats import arrays, blocks, workbook, zones
@@ -26,15 +27,21 @@ BLOCKS: tuple[tuple[Callable[[list[str]], bool], Callable[[list[str], str], Read
 """How a text of many small tables is known, what it holds, whose it is."""
 
 
-def text_in(data: bytes, file: str) -> tuple[str, str]:
-    """The text in the bytes of a file, written out where they are a spreadsheet or an array; how they keep it."""
+def text_in(data: bytes, file: str, sheet: str | None = None) -> tuple[str, str]:
+    """The text in the bytes of a file, written out where they are an array or a spreadsheet, whose ``sheet`` may
+    be named; how they keep it.
+    """
     if workbook.is_workbook(data):
-        return workbook.text_of_sheet(data, file)
+        return workbook.text_of_sheet(data, file, sheet)
+    if sheet is not None:
+        raise InputError(
+            Defect("is no spreadsheet, so that it has no sheets", file=file, field="--sheet", value=sheet)
+        )
     if arrays.is_array(data):
         return arrays.text_of_array(data, file), "an array"
     return text_of(data, file), ""
 
 
-def read_lines(path: str | Path) -> list[str]:
+def read_lines(path: str | Path, sheet: str | None = None) -> list[str]:
     """The lines of a table without their ends; raises :class:`InputError` where it is none."""
-    return lines_of(text_in(read_bytes(path), str(path))[0], str(path))
+    return lines_of(text_in(read_bytes(path), str(path), sheet)[0], str(path))

@@ -27,6 +27,9 @@ MOST_MEMORY, MOST_SECONDS = 2**32, 120
 _DAY = 86400
 _WIDEST = 1000
 """Columns of a sheet that are read."""
+_ALIKE = 0.5
+"""Part of the rows of numbers of the longest sheet from which on it is not clear which of two is meant."""
+_NUMBER = re.compile(r"\s*[-+−]?\d+([.,]\d*)?([eE][-+]?\d+)?\s*")
 _WHOLE = 1e15
 """Up to here a float without a fraction is written as a whole number."""
 _STYLES = re.compile(r"xl/styles\.(xml|bin)")
@@ -36,43 +39,66 @@ _NO_VALUE = re.compile(rb"<f\b[^>]*(?:/>|>[^<]*</f>)\s*(?:<v\s*/>|<v></v>|</c>)"
 
 
 @dataclass
-class _Sheet:
+class Sheet:
+    """A sheet's name, whether it is hidden, and its rows from the first on."""
+
     name: str
-    hidden: bool
     rows: list[list[Any]]
+    hidden: bool = False
 
     @property
     def cells(self) -> int:
+        """How many have any content."""
         return sum(cell != "" for row in self.rows for cell in row)
+
+    @property
+    def numbers(self) -> int:
+        """Rows that have two numbers or more."""
+        return sum(sum(map(_is_number, row)) > 1 for row in self.rows)
+
+
+def chosen(sheets: list[Sheet], wanted: str | None) -> Sheet | dict[str, Any]:
+    """The sheet that is ``wanted``, else the one with a table, a hidden one only where no other has any.
+
+    Else what is ``wrong``: "no sheet" (of that name), "empty", "several" (with tables of about one length).
+    """
+    if wanted is not None:
+        found = next((sheet for sheet in sheets if sheet.name == wanted), None)
+        return found or {"wrong": "no sheet", "sheets": [sheet.name for sheet in sheets]}
+    filled = [sheet for sheet in sheets if sheet.cells]
+    filled = [sheet for sheet in filled if not sheet.hidden] or filled
+    if not filled:
+        return {"wrong": "empty"}
+    best = max(filled, key=lambda sheet: sheet.cells)
+    most = max(sheet.numbers for sheet in filled)
+    rivals = [sheet for sheet in filled if most and sheet.numbers >= _ALIKE * most]
+    if len(rivals) > 1:
+        return {"wrong": "several", "sheets": [f"{sheet.name} ({sheet.numbers} rows)" for sheet in rivals]}
+    return rivals[0] if rivals else best
 
 
 def answer_to(data: bytes, wanted: str | None) -> dict[str, Any]:
-    """The sheet that is ``wanted``, else the one with the most cells, of hidden ones only where no other has any.
+    """The sheet that is ``wanted`` or :func:`chosen`.
 
-    Keys: ``sheet``, ``sheets`` (all names), ``rows`` (texts), ``rounded`` (times are to the millisecond).
-    ``wrong`` alone: "empty", "formulas" (without values), "no sheet" (of that name).
+    Keys: ``sheet``, ``sheets`` (all names), ``rows`` (texts), ``rounded`` (times are to the millisecond); or
+    ``wrong``, which may be "formulas" (without values) too.
     """
     book = calamine.load_workbook(io.BytesIO(data))
     about = [m for m in book.sheets_metadata if m.typ == calamine.SheetTypeEnum.WorkSheet]
-    names = [m.name for m in about]
-    if wanted is not None and wanted not in names:
-        return {"wrong": "no sheet", "sheets": names}
-    best: _Sheet | None = None
-    for m in about:
-        if wanted in (None, m.name):
-            hidden = m.visible != calamine.SheetVisibleEnum.Visible
-            here = _Sheet(m.name, hidden, _rows(book, m.name))
-            rank = (here.cells > 0, not hidden, here.cells)
-            if best is None or rank > (best.cells > 0, not best.hidden, best.cells):
-                best = here
-    if best is None or not best.cells:
-        return {"wrong": "formulas" if _without_values(data) else "empty"}
-    if _has_empty_column(best.rows) and 2 * _without_values(data) > len(best.rows):
+    visible = calamine.SheetVisibleEnum.Visible
+    here = chosen([Sheet(m.name, _rows(book, m.name), m.visible != visible) for m in about], wanted)
+    if isinstance(here, dict):
+        return {"wrong": "formulas"} if here["wrong"] == "empty" and _without_values(data) else here
+    if _has_empty_column(here.rows) and 2 * _without_values(data) > len(here.rows):
         return {"wrong": "formulas"}
     rounded = False
-    if any(isinstance(cell, datetime.time | datetime.datetime) for row in best.rows for cell in row):
-        rounded = not _sharpen(best, data)
-    return {"sheet": best.name, "sheets": names, "rows": _texts(best.rows), "rounded": rounded}
+    if any(isinstance(cell, datetime.time | datetime.datetime) for row in here.rows for cell in row):
+        rounded = not _sharpen(here, data)
+    return {"sheet": here.name, "sheets": [m.name for m in about], "rows": _texts(here.rows), "rounded": rounded}
+
+
+def _is_number(cell: Any) -> bool:
+    return _NUMBER.fullmatch(cell) is not None if isinstance(cell, str) else not isinstance(cell, bool)
 
 
 def _rows(book: calamine.CalamineWorkbook, name: str) -> list[list[Any]]:
@@ -94,7 +120,7 @@ def _without_values(data: bytes) -> int:
     return sum(len(_NO_VALUE.findall(part)) for part in parts)
 
 
-def _sharpen(sheet: _Sheet, data: bytes) -> bool:
+def _sharpen(sheet: Sheet, data: bytes) -> bool:
     """Replace times by what the file has to the last digit; False where it is not told: in .xls."""
     if data.startswith(b"PK"):
         stripped = io.BytesIO()

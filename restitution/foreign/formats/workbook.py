@@ -1,7 +1,7 @@
 """Spreadsheets as text: Excel's .xlsx, .xlsb and .xls, LibreOffice's .ods, the XML of Excel 2003.
 
-The sheet with the most cells is written out line by line, cells between tabs, as if it had been saved as text; a
-line of the text is a row of the sheet. Cells are read by calamine in a process of its own
+The sheet that has a table is written out line by line, cells between tabs, as if it had been saved as text; a line
+of the text is a row of the sheet. Cells are read by calamine in a process of its own
 (:mod:`~restitution.foreign.formats.spreadsheet_cells`).
 """
 
@@ -24,11 +24,15 @@ from restitution.inputs import MOST_TABLE
 _ENCRYPTED = "EncryptedPackage".encode("utf-16-le")
 ZIP, COMPOUND = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 _PARTS = re.compile(r"xl/worksheets/[^/]+\.(xml|bin)|content\.xml")
+_MOST_NAMED = 20
+"""Sheets that a message names."""
 _PATIENCE = 10.0
 """How much longer than its own time the process is waited for."""
 _WRONG = {
     "password": "is a spreadsheet with a password; save it without one, or its sheet as CSV",
     "empty": "is a spreadsheet without a table",
+    "several": "has several sheets with a table",
+    "no sheet": "has no sheet of that name",
     "formulas": "has formulas without their values, as programs write them that do not compute: open it in a "
     "spreadsheet program and save it there",
     "size": "is a spreadsheet larger than what is read of a table, or has a cell far from its table; clear that "
@@ -45,14 +49,21 @@ def is_workbook(data: bytes) -> bool:
     return data.startswith(ZIP) and any(_PARTS.fullmatch(part.filename) for part in _packed(data))
 
 
-def text_of_sheet(data: bytes, file: str) -> tuple[str, str]:
-    """The sheet with the most cells as text, and which it is; raises :class:`InputError` where none is read."""
+def text_of_sheet(data: bytes, file: str, wanted: str | None = None) -> tuple[str, str]:
+    """The sheet with a table, or the one ``wanted``, as text; which it is.
+
+    Raises :class:`InputError` where none can be read, or several have tables.
+    """
     if any(part.file_size > MOST_TABLE for part in _packed(data)):
         raise InputError(Defect(_WRONG["size"], file=file))
     if data.startswith(COMPOUND) and _ENCRYPTED in data:
         raise InputError(Defect(_WRONG["password"], file=file))
-    found = _of_xml(data) if excel_2003.is_excel_2003(data) else _of_process(data)
-    if wrong := found.get("wrong"):
+    found = _of_xml(data, wanted) if excel_2003.is_excel_2003(data) else _of_process(data, wanted)
+    if (wrong := found.get("wrong")) in ("several", "no sheet"):
+        names = ", ".join(found["sheets"][:_MOST_NAMED]) + (" ..." if len(found["sheets"]) > _MOST_NAMED else "")
+        rule = f"{_WRONG[wrong]}; --sheet takes one of: {names}"
+        raise InputError(Defect(rule, file=file, field=None if wanted is None else "--sheet", value=wanted))
+    if wrong:
         raise InputError(Defect(_WRONG[wrong], file=file))
     rows = found["rows"]
     width = max(map(len, rows))
@@ -80,22 +91,24 @@ def _packed(data: bytes) -> list[zipfile.ZipInfo]:
         return []
 
 
-def _of_xml(data: bytes) -> dict[str, Any]:
+def _of_xml(data: bytes, wanted: str | None) -> dict[str, Any]:
+    from restitution.foreign.formats.spreadsheet_cells import Sheet, chosen
+
     try:
         sheets = excel_2003.sheets_of(data)
     except (expat.ExpatError, ValueError, LookupError):
         return {"wrong": "damaged"}
-    name = max(sheets, key=lambda name: sum(map(len, sheets[name])), default=None)
-    if name is None or not any(map(any, sheets[name])):
-        return {"wrong": "empty"}
-    return {"sheet": name, "sheets": list(sheets), "rows": sheets[name]}
+    found = chosen([Sheet(name, rows) for name, rows in sheets.items()], wanted)
+    if isinstance(found, dict):
+        return found
+    return {"sheet": found.name, "sheets": list(sheets), "rows": found.rows} if found.cells else {"wrong": "empty"}
 
 
-def _of_process(data: bytes) -> dict[str, Any]:
+def _of_process(data: bytes, wanted: str | None) -> dict[str, Any]:
     """What the process answers; how it ended where it does not: by an error of its own, or killed."""
     from restitution.foreign.formats import spreadsheet_cells
 
-    command = [sys.executable, "-P", spreadsheet_cells.__file__]
+    command = [sys.executable, "-P", spreadsheet_cells.__file__, *([] if wanted is None else [wanted])]
     patience = _PATIENCE + spreadsheet_cells.MOST_SECONDS
     try:
         done = subprocess.run(command, input=data, capture_output=True, timeout=patience, check=False)

@@ -107,6 +107,52 @@ def test_a_sheet_of_a_laboratory(tmp_path):
     assert [row[3] - found[0][3] for row in found] == pytest.approx([0, 1e-4, 2e-4, 3e-4], abs=2e-6)
 
 
+def _two_runs(least):
+    """Two sheets with a table, the second one's heights turned over, and a third with some numbers, or none."""
+
+    def rows(sign):
+        return "".join(f"<Row><Cell>{t}</Cell><Cell>{sign * y}</Cell></Row>" for t, y in ROWS)
+
+    name = '"urn:schemas-microsoft-com:office:spreadsheet"'
+    head = "".join(f"<Cell>{name}</Cell>" for name in NAMES)
+    sheets = {
+        "Run 1": rows(1),
+        "Run 2": rows(-1) if least else "",
+        "Notes": "<Row><Cell>1</Cell><Cell>2</Cell></Row>",
+    }
+    body = "".join(
+        f'<Worksheet ss:Name="{n}"><Table><Row>{head}</Row>{own}</Table></Worksheet>' for n, own in sheets.items()
+    )
+    return f'<?xml version="1.0"?><Workbook xmlns={name} xmlns:ss={name}>{body}</Workbook>'.encode()
+
+
+@pytest.mark.parametrize("write", ["openpyxl", "xml"])
+def test_of_several_sheets_with_a_table_one_is_asked_for(tmp_path, write):
+    data = (BOOKS / "runs.xlsx").read_bytes() if write == "openpyxl" else _two_runs(True)
+    rule = refused(tmp_path, data)
+    assert "--sheet" in rule
+    assert "Run 1 (4 rows), Run 2 (4 rows)" in rule
+    for sheet, sign in (("Run 1", 1), ("Run 2", -1)):
+        (tmp_path / "book").write_bytes(data)
+        found = numbers(read_foreign(tmp_path / "book", sheet=sheet))
+        assert found == [[t, sign * y] for t, y in ROWS]
+    with pytest.raises(InputError, match="Run 3") as error:
+        read_foreign(tmp_path / "book", sheet="Run 3")
+    assert "Run 1" in error.value.defects[0].rule
+
+
+def test_one_sheet_with_a_table_among_others_is_taken_and_named(tmp_path):
+    table = read(tmp_path, _two_runs(False))
+    assert numbers(table) == [list(row) for row in ROWS]
+    assert "Run 1" in table.form
+
+
+def test_a_sheet_of_what_has_none_is_refused(tmp_path):
+    (tmp_path / "track.csv").write_text("t,y\n0,1\n1,2\n")
+    with pytest.raises(InputError, match="no spreadsheet"):
+        read_foreign(tmp_path / "track.csv", sheet="Run 1")
+
+
 @pytest.mark.parametrize(
     ("data", "why"),
     [
