@@ -116,6 +116,8 @@ def _guessed(table: ForeignTable) -> tuple[str | None, str | None]:
         (own for name in VELOCITIES if (own := table.column(name)) and own != time and _has_signs(table, own)),
         None,
     )
+    if len(table.header) == 1 and time is None:
+        value = value or table.header[0]
     if len(table.header) == 2:
         time = time or next(name for name in table.header if name != value)
         value = value or next(name for name in table.header if name != time)

@@ -25,10 +25,12 @@ _SAMPLE = 200
 _SAME_WIDTH = 0.8
 """Part of the rows that must have as many cells as most have."""
 _SEPARATOR_LINE = re.compile(r'"?sep=.{0,2}"?', re.IGNORECASE)
+_RULE = re.compile(r"[|+\s]*:?[-=]{3,}:?([|+\s]+:?[-=]{3,}:?)*[|+\s]*")
+"""A line drawn in a table for readers: of Markdown, of databases, of reports."""
 _WORD = re.compile(r'"[^"]*"|\S+')
 _BRACKETS = re.compile(r"[()]")
 _VECTOR = re.compile(r"\([^()]*\)")
-_IN_CELL = re.compile(r"[(\[]\s*([^()\[\]]*?)\s*[)\]]")
+_IN_CELL = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 _OF_NUMPY = re.compile(r"(?:np|numpy)\.\w+\(([^()]*)\)")
 
 
@@ -76,7 +78,10 @@ def layout_of(
         if text.startswith(COMMENTS):
             mark = next(mark for mark in COMMENTS if text.startswith(mark))
             comments.append((number, text.lstrip(mark).strip()))
-        elif text and not (text[0] in 'sS"' and _SEPARATOR_LINE.fullmatch(text.rstrip())):
+        elif text and not (
+            (text[0] in 'sS"' and _SEPARATOR_LINE.fullmatch(text.rstrip()))
+            or (text[0] in "|+-=:" and _RULE.fullmatch(text.rstrip()))
+        ):
             plain_lines.append((number, line))
     vectors = any(_VECTOR.search(line) for _, line in plain_lines[-3:]) and _all_vectors(plain_lines[-_SAMPLE:])
     separator = " " if vectors else _separator([line for _, line in plain_lines[-_SAMPLE:]])
@@ -223,5 +228,5 @@ def part_of(name: str, k: int, width: int) -> str:
 def _numbers_in(cell: str) -> list[str]:
     """The numbers of a vector; none where the cell is another thing."""
     match = _IN_CELL.fullmatch(_OF_NUMPY.sub(r"\1", cell.strip())) if cell[:1] in ("(", "[") else None
-    parts = re.split(r"\s*[,;]\s*|\s+", match[1]) if match else []
+    parts = re.split(r"\s*[,;]\s*|\s+", match[1].strip()) if match else []
     return parts if all(map(is_number, parts)) else []

@@ -21,7 +21,8 @@ _THOUSANDS = re.compile(
 )
 _AS_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _CLOCK = re.compile(
-    r"((?P<date>\d{4}-\d\d-\d\d)[T ])?(?P<h>\d{1,3}):(?P<min>[0-5]\d):(?P<s>[0-5]\d)([.,](?P<part>\d+))?Z?",
+    r"((?P<date>\d{4}[-/]\d\d[-/]\d\d|\d{1,2}[-./](\d{1,2}|[A-Za-z]{3})[-./]\d{2,4})[T ])?"
+    r"(?P<h>\d{1,3}):(?P<min>[0-5]\d):(?P<s>[0-5]\d)([.,](?P<part>\d+))?(Z| ?(?P<half>[AaPp])[Mm])?",
     re.ASCII,
 )
 _DURATION = re.compile(r"([+-]?\d+(?:\.\d*)?(?:e[+-]?\d+)?) sec", re.ASCII)
@@ -38,11 +39,22 @@ def seconds(cell: str) -> str | None:
         duration = _DURATION.fullmatch(cell.strip())
         return None if duration is None else duration[1]
     try:
-        day = date.fromisoformat(match["date"]).toordinal() % 1000 if match["date"] else 0
+        day = _day(match["date"]) if match["date"] else 0
     except ValueError:
         return None
-    whole = 86400 * day + 3600 * int(match["h"]) + 60 * int(match["min"]) + int(match["s"])
+    hours = int(match["h"])
+    if match["half"]:
+        hours = hours % 12 + 12 * (match["half"] in "Pp")
+    whole = 86400 * day + 3600 * hours + 60 * int(match["min"]) + int(match["s"])
     return f"{whole}.{match['part'] or 0}"
+
+
+def _day(text: str) -> int:
+    """A date as a number that the next day has one more of, the day before the month or after it."""
+    parts = re.split(r"[-./]", text)
+    if len(parts[0]) == 4:
+        return date(*map(int, parts)).toordinal() % 1000
+    return sum(int(part) for part in parts[:2] if part.isdigit())
 
 
 def plain(cell: str, decimal: Decimal = ".") -> str:

@@ -164,7 +164,7 @@ TIMES = (
 POSITIONS = (
     "gap_m", "gap", "gap/d", "gap_over_d", "y", "z", "height", "h", "pos_y", "pos_z", "position", "posy", "posz",
     "p_y", "p_z", "zpos", "ypos", "v_zpos", "v_ypos", "cy", "ym", "y position",
-    "höhe", "hauteur", "altura", "quota", "altezza", "wysokość", "centreofmass_z", "centreofmass_y",
+    "höhe", "hoehe", "hauteur", "altura", "quota", "altezza", "wysokość", "centreofmass_z", "centreofmass_y",
     "зазор", "высота", "координата", "положение", "у", "ύψος", "高度", "高さ", "位置", "位移",
     "変位", "间隙", "높이",
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Numbers kept as arrays: NumPy's .npy, workspaces of MATLAB, as text.
+"""Numbers kept as arrays: NumPy's .npy and .npz, workspaces of MATLAB, as text.
 
 What is written out has a line of names where there are any, then a row a line, as if saved as text. Of a workspace
 are taken the arrays as long as the longest; tracks of u-track (``tracksFinal``) are rows of track, frame, x, y.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import tokenize
+import zipfile
 import zlib
 from collections.abc import Sequence
 from typing import Any
@@ -15,19 +16,23 @@ from typing import Any
 import numpy as np
 
 from restitution.errors import Defect, InputError
+from restitution.inputs import MOST_TABLE
 
-NUMPY, MATLAB = b"\x93NUMPY", b"MATLAB 5.0"
+NUMPY, MATLAB, ZIP = b"\x93NUMPY", b"MATLAB 5.0", b"PK\x03\x04"
+_NO_ARRAY = (ValueError, OSError, EOFError, SyntaxError, tokenize.TokenError, MemoryError)
 _WIDEST = 200
 """Columns of an array that are read."""
 
 
 def is_array(data: bytes) -> bool:
-    """Whether bytes are an array of NumPy or a workspace of MATLAB."""
-    return data.startswith((NUMPY, MATLAB))
+    """Whether bytes are an array of NumPy, several in an .npz, or a workspace of MATLAB."""
+    return data.startswith((NUMPY, MATLAB)) or (data.startswith(ZIP) and bool(_packed(data)))
 
 
 def text_of_array(data: bytes, file: str) -> str:
     """Its numbers as text; raises :class:`InputError` where it holds no table of numbers."""
+    if data.startswith(ZIP):
+        return _several(data, file)
     return _numpy(data, file) if data.startswith(NUMPY) else _matlab(data, file)
 
 
@@ -39,7 +44,7 @@ def _text(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
 def _numpy(data: bytes, file: str) -> str:
     try:
         array = np.load(io.BytesIO(data), allow_pickle=False)
-    except (ValueError, OSError, EOFError, SyntaxError, tokenize.TokenError, MemoryError):
+    except _NO_ARRAY:
         raise InputError(Defect("is no array of NumPy that holds numbers alone", file=file)) from None
     if array.dtype.names and array.ndim == 1:
         return _text(array.dtype.names, array.tolist())
@@ -47,6 +52,36 @@ def _numpy(data: bytes, file: str) -> str:
         shape = " x ".join(map(str, array.shape)) or "a single value"
         raise InputError(Defect(f"is an array of {shape}, no table of rows and columns of numbers", file=file))
     return _text([], _upright(array).tolist())
+
+
+def _packed(data: bytes) -> list[zipfile.ZipInfo]:
+    """The arrays in an .npz; none where it is another archive."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            parts = archive.infolist()
+    except (zipfile.BadZipFile, OSError, EOFError, ValueError, LookupError, RuntimeError):
+        return []
+    return parts if all(part.filename.endswith(".npy") for part in parts) else []
+
+
+def _several(data: bytes, file: str) -> str:
+    """The arrays of an .npz that are as long as the longest, side by side."""
+    if sum(part.file_size for part in _packed(data)) > MOST_TABLE:
+        raise InputError(Defect("is larger unpacked than what is read of a table", file=file))
+    arrays: dict[str, np.ndarray] = {}
+    try:
+        with np.load(io.BytesIO(data), allow_pickle=False) as content:
+            for name in content.files:
+                if (array := content[name]).dtype.kind in "iuf" and array.ndim in (1, 2) and array.size:
+                    arrays[name] = array[:, None] if array.ndim == 1 else array
+    except (*_NO_ARRAY, zipfile.BadZipFile, zlib.error, LookupError, RuntimeError):
+        raise InputError(Defect("is no archive of NumPy that holds numbers alone", file=file)) from None
+    names, columns = side_by_side(arrays)
+    if len(columns) < 2:
+        found = ", ".join(arrays) or "none"
+        rule = f"is an archive of NumPy without two columns of one length; arrays of numbers in it: {found}"
+        raise InputError(Defect(rule, file=file))
+    return _text(names, np.column_stack(columns).tolist())
 
 
 def _upright(array: np.ndarray) -> np.ndarray:

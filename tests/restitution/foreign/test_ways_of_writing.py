@@ -1,11 +1,16 @@
 """One track as other programs print it: names of rows, vectors in cells, settings above, an index of times."""
 
+from time import perf_counter
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from restitution.errors import InputError
 from restitution.foreign import read_foreign
+from restitution.foreign.asking import what_is_needed
+from restitution.foreign.layout import layout_of, vectors_apart
+from restitution.foreign.number_text import seconds
 
 TIMES = [0.001 * n for n in range(8)]
 HEIGHTS = [5.0, 4.25, 2.5, 3.125, 3.0, 2.0, 1.0, 2.5]
@@ -30,6 +35,8 @@ WAYS = {
         text("t,center", row=lambda n, t, y: f'{t:.3f},"(np.float64({n}.5), np.float64({y}))"'), "t", "center_y",
     ),
     "arrays of NumPy": (text("t,pos,r", row=lambda n, t, y: f"{t:.3f},[ {n}.  0.5 {y} ],30"), "t", "pos_z"),
+    "Markdown": (text("| t (s) | y |", "|:---|---:|", row=lambda n, t, y: f"| {t:.3f} | {y} |"), "t (s)", "y"),
+    "a report": (text("t       y", "-----  ----", row=lambda n, t, y: f"{t:.3f}  {y}"), "t", "y"),
     "settings above, no names": (
         text("NO_OF_FRAMES\t8", "FREQUENCY\t1000", "MARKER_NAMES\tball", row=lambda n, t, y: f"{t:.3f}\t5.0\t{y}"),
         "1", "3",
@@ -45,6 +52,51 @@ def test_columns_are_found(tmp_path, name):
     at = [table.header.index(time), table.header.index(value)]
     found = np.array([[float(cells[k]) for k in at] for _, cells in table.rows])
     np.testing.assert_allclose(found, ROWS, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "stamp",
+    [
+        "2024-05-07 23:59:{:09.6f}",
+        "07-May-2024 23:59:{:09.6f}",
+        "5/7/2024 11:59:{:09.6f} PM",
+        "07.05.2024 23:59:{:09.6f}",
+        "23:59:{:09.6f}",
+    ],
+)
+def test_dates_and_times_as_countries_and_programs_write_them(tmp_path, stamp):
+    (tmp_path / "track.csv").write_text(text("Time,y", row=lambda n, t, y: f"{stamp.format(2 + t)},{y}"))
+    table = read_foreign(tmp_path / "track.csv")
+    assert table.units["Time"] == "s"
+    times = [float(cells[0]) for _, cells in table.rows]
+    np.testing.assert_allclose(np.subtract(times, times[0]), TIMES, atol=2e-6)
+
+
+@pytest.mark.parametrize(
+    ("day", "next_day"),
+    [
+        ("2024-05-31 23:59:59.5", "2024-06-01 00:00:00.5"),
+        ("07-May-2024 23:59:59.5", "08-May-2024 00:00:00.5"),
+        ("5/7/2024 11:59:59.5 PM", "5/8/2024 12:00:00.5 AM"),
+        ("7.5.2024 23:59:59.5", "8.5.2024 00:00:00.5"),
+    ],
+)
+def test_midnight_is_a_second_like_others(day, next_day):
+    assert float(seconds(next_day)) - float(seconds(day)) == pytest.approx(1.0)
+
+
+def test_a_single_column_is_the_value_that_is_asked_about(tmp_path):
+    (tmp_path / "laser.txt").write_text("Distance [mm]\n" + "".join(f"{y}\n" for y in HEIGHTS))
+    asked = what_is_needed(read_foreign(tmp_path / "laser.txt")).rule
+    assert "gap_m='Distance [mm]'" in asked
+    assert "time_s=row" in asked
+
+
+def test_lines_that_nearly_are_rules_take_no_time():
+    begin = perf_counter()
+    layout_of(["t,y", "-" * 100000 + "x,1", *(f"{t},{y}" for t, y in ROWS)], "a file")
+    vectors_apart(["t", "p"], [(2, ["0", "(" + " " * 100000])])
+    assert perf_counter() - begin < 5
 
 
 def test_a_lost_vector_is_lost_in_all_its_columns(tmp_path):

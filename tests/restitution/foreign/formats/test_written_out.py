@@ -38,6 +38,27 @@ def test_an_array_of_numpy(tmp_path):
         read_foreign(tmp_path / "one.npy")
 
 
+def test_several_arrays_of_numpy(tmp_path):
+    np.savez(tmp_path / "a.npz", t=TIMES, xy=np.array([HEIGHTS, HEIGHTS]), fps=500.0, note="x")
+    table = read_foreign(tmp_path / "a.npz")
+    assert table.header == ["t", "xy_1", "xy_2"]
+    assert [[float(cells[0]), float(cells[2])] for _, cells in table.rows] == [list(row) for row in ROWS]
+    np.savez(tmp_path / "b.npz", fps=np.array([500.0]))
+    with pytest.raises(InputError, match="fps"):
+        read_foreign(tmp_path / "b.npz")
+    np.savez(tmp_path / "c.npz", t=np.array([{}], dtype=object), y=np.array(HEIGHTS))
+    with pytest.raises(InputError, match="numbers alone"):
+        read_foreign(tmp_path / "c.npz")
+    data = (tmp_path / "a.npz").read_bytes()
+    for at in range(0, len(data), len(data) // 40):
+        (tmp_path / "a.npz").write_bytes(data[:at] + data[at + 11 :])
+        with contextlib.suppress(InputError):
+            read_foreign(tmp_path / "a.npz")
+    np.savez_compressed(tmp_path / "d.npz", t=np.zeros(2**26))
+    with pytest.raises(InputError, match="larger"):
+        read_foreign(tmp_path / "d.npz")
+
+
 def test_a_workspace_of_matlab(tmp_path):
     savemat(tmp_path / "a.mat", {"t": TIMES, "xy": np.array([[1.0] * 4, HEIGHTS]), "fps": 500.0, "note": "x"})
     table = read_foreign(tmp_path / "a.mat")
