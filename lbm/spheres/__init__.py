@@ -5,8 +5,8 @@ Read :mod:`~lbm.spheres.spheres` (a step of a sphere), then its parts in their o
 :mod:`~lbm.spheres.symmetry` (a sphere that a mirror cuts), :mod:`~lbm.spheres.film`,
 :mod:`~lbm.spheres.contact` and :mod:`~lbm.spheres.wall_motion` (sphere and wall), where each kind of contact has a
 motion of its own (:mod:`~lbm.spheres.motion`, :mod:`~lbm.spheres.carried`).
-:mod:`~lbm.spheres.runaway` stops a sphere that diverges; :mod:`~lbm.spheres.sampling` tells one film or contact
-from another, for checkpoints.
+:mod:`~lbm.spheres.within` and :mod:`~lbm.spheres.runaway` stop one that leaves the box, or diverges;
+:mod:`~lbm.spheres.sampling` tells one film or contact from another, for checkpoints.
 """
 
 from lbm.spheres.contact import SETTLED, Contact, DryRebound, FilmRebound, SoftContact, lattice_added_mass

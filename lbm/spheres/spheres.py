@@ -30,7 +30,7 @@ from lbm.bodies.body import Body
 from lbm.bodies.reflection import SCHEMES
 from lbm.errors import InputError
 from lbm.faces.records import FACES
-from lbm.fluid.lattice import BOUNCE, PERIODIC, SLIP, Lattice
+from lbm.fluid.lattice import BOUNCE, PERIODIC, Lattice
 from lbm.spheres.contact import Contact, Impact
 from lbm.spheres.exchange import exchange
 from lbm.spheres.film import Film
@@ -41,6 +41,7 @@ from lbm.spheres.sampling import sampled
 from lbm.spheres.surface import REACH, Surfaces
 from lbm.spheres.symmetry import mirrored_axes, of_whole, parts, refuse_asymmetric, refuse_asymmetric_spin
 from lbm.spheres.wall_motion import FRACTION, away, gap_to, motion_at_wall, refuse_met
+from lbm.spheres.within import refuse_lost, refuse_outside
 
 Drive = Callable[[float, float], Sequence[float] | None]
 COLUMNS = ("step", "gap", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz")
@@ -91,7 +92,7 @@ class Spheres(Body):
     gravity : acceleration, (3,) in cells a step^2; buoyancy follows, the fluid itself is not accelerated.
     film : what a film thinner than a cell adds to the fluid's force at no-slip walls, a :class:`lbm.spheres.Film`.
     contact : what happens where a sphere touches such a wall, a record of :mod:`lbm.spheres.contact`; without one
-        nothing stops the sphere.
+        nothing stops the sphere: where its centre goes through a face the run is refused, as where spheres meet.
     drive : ``drive(step, gap)`` gives the velocity (3,) of all spheres at the end of that step, or None, which
         sets them free for good; ``gap`` in cells, to the nearest wall. Like all functions given here it depends on
         its arguments alone, for a checkpoint knows it by what it gives at some of them.
@@ -175,28 +176,17 @@ class Spheres(Body):
         return {name: rows[:, i].copy() for i, name in enumerate(COLUMNS)}
 
     def prepare(self, lattice: Lattice, step: int) -> None:
-        """Refuse spheres that the box cannot hold; raises :class:`InputError`."""
-        if step > 0:
-            return
+        """Refuse spheres that the box cannot hold, or holds no more; raises :class:`InputError`."""
         grid = lattice.grid
-        faces = np.array(grid.faces)
-        for s, (r, centre) in enumerate(zip(self.radii, self.centres, strict=True)):
+        if step > 0:
+            refuse_lost(grid, self.centres, self.radii, step)
+            return
+        refuse_outside(grid, self.centres, self.radii)
+        for s, centre in enumerate(self.centres):
             mirrors = mirrored_axes(grid, centre)
-            if 2 * (r + REACH) > min(grid.shape * np.where(mirrors, 2, 1)):
-                raise InputError(f"sphere {s}: diameter {2 * r:g} cells in a box of {grid.shape}: enlarge the box")
-            for face in np.flatnonzero(faces != PERIODIC):
-                gap = gap_to(centre, r, face, grid.shape)
-                if gap < 0 and not mirrors[face // 2]:
-                    hint = ", which may cut it through the centre only" if faces[face] == SLIP else ""
-                    raise InputError(f"sphere {s}: {-gap:g} cells beyond the face {FACES[face]}{hint}")
             refuse_asymmetric(mirrors, f"velocity of sphere {s}", self.velocities[s])
             refuse_asymmetric(mirrors, "gravity", self.gravity)
             refuse_asymmetric_spin(mirrors, f"spin of sphere {s}", self.spins[s])
-            for other in range(s):
-                apart = self.centres[other] - centre
-                apart -= np.where(faces[::2] == PERIODIC, grid.shape * np.round(apart / grid.shape), 0.0)
-                if np.linalg.norm(apart) < r + self.radii[other]:
-                    raise InputError(f"spheres {other} and {s} overlap")
 
     def reach(self, lattice: Lattice) -> np.ndarray:
         """The planes with links and refilled cells, their neighbours, and the neighbours of these."""

@@ -92,6 +92,8 @@ class FilmMotion(Motion):
     def _substep_size(self, gap: float, v: float) -> float:
         if v == 0:
             return 1.0
+        if gap < 0 and self.touch == 0:  # no film is left that asks for less
+            return 1 / _FEWEST
         if gap < 2 * self.cut_off + 0.1:
             return min(1 / _FEWEST, self.fraction * max(gap, self.touch, 1e-6) / abs(v))
         return 1.0
