@@ -72,6 +72,8 @@ class FixedBody(Body):
                 f"solid: {self._solid.dtype} of shape {self._solid.shape}; give booleans on 3 axes, and some fluid"
             )
         self._solid = self._solid.astype(bool)
+        if not self._solid.any():
+            raise InputError("solid: no cell is true; the body lies outside the box or between centres of cells")
         self.shape = self._solid.shape
         try:
             self._given = None if fraction is None else np.asarray(fraction, dtype=float)

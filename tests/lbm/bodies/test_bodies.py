@@ -274,8 +274,9 @@ def test_what_is_no_body_is_refused(body):
         ({"origin": (0, 1)}, "origin"),
         ({"solid": np.ones((8, 8, 8), bool)}, "fluid"),
         ({"solid": np.zeros((8, 8))}, "3 axes"),
+        ({"solid": np.zeros((8, 8, 8), bool)}, "no cell"),
     ],
 )
 def test_bad_arguments_of_a_body_are_refused(changes, named):
     with pytest.raises(InputError, match=named):
-        FixedBody(**{"solid": np.zeros((8, 8, 8), dtype=bool), **changes})
+        FixedBody(**{"solid": np.arange(512).reshape(8, 8, 8) == 0, **changes})
