@@ -34,6 +34,8 @@ def run(args: argparse.Namespace) -> int | None:
     from restitution.bounce import IntegrationError
     from restitution.cases.reading import read_case
     from restitution.commands.results import folder_for, show_contacts
+    from restitution.files import write_folder
+    from restitution.locks import sole_writer
     from restitution.runs.point_particle import predict, write
     from restitution.runs.record import POINT_PARTICLE
 
@@ -46,7 +48,11 @@ def run(args: argparse.Namespace) -> int | None:
     except IntegrationError as error:
         print(f"error: {args.case}: {error}", file=sys.stderr)  # noqa: T201
         return 2
-    write(prediction, folder, time.perf_counter() - began)
+    seconds = time.perf_counter() - began
+    write_folder(folder, {})
+    with sole_writer(folder):
+        folder_for(str(folder), folder.name, POINT_PARTICLE)  # another command may have written there meanwhile
+        write(prediction, folder, seconds)
     show_contacts(prediction.contacts, list(prediction.path.apexes() * 1e3))
     show(f"results in {folder}")
     return None
