@@ -85,7 +85,7 @@ def replacing(folder: Path, names: Iterable[str]) -> Iterator[None]:
     path = folder / HALF_NEW
     stream = _held(path, wait=True)
     try:
-        with _put_off():
+        with interrupts_put_off():
             stream.truncate(0)
             stream.write(_HALF_NEW.format(names="\n".join(names)).encode("utf-8", "surrogateescape"))
             yield
@@ -95,7 +95,7 @@ def replacing(folder: Path, names: Iterable[str]) -> Iterator[None]:
 
 
 @contextmanager
-def _put_off() -> Iterator[None]:
+def interrupts_put_off() -> Iterator[None]:
     """Within it Ctrl-C is only noted, to be raised at the end; signals reach the main thread alone."""
     if threading.current_thread() is not threading.main_thread():
         yield

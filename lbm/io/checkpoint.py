@@ -112,7 +112,7 @@ def read(
         whole = {name: int(file.attrs[name]) for name in numbers}
         if file.attrs["seal"] != _seal(text, whole, found):
             raise InputError(
-                f"{path}: damaged or edited checkpoint: it is not as it was written; use an earlier one"
+                f"{path}: damaged or edited checkpoint: not as it was written; use an earlier one, or start anew"
             )
         for name, item in found.items():
             own = exact.get(name)
@@ -159,7 +159,9 @@ class _Opened:
             if not _is_file(path):
                 raise InputError(f"{shown(str(path))}: no such checkpoint") from None
             what = " ".join(str(error).split())[:200]
-            raise InputError(f"{path}: damaged or truncated checkpoint ({what}); use an earlier one") from error
+            raise InputError(
+                f"{path}: damaged or truncated checkpoint ({what}); use an earlier one, or start anew"
+            ) from error
 
 
 def _text(file: h5py.File) -> str:

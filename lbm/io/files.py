@@ -19,6 +19,7 @@ except ImportError:  # where files cannot be held, nothing is known to be stale
 
 from lbm import arguments
 from lbm.errors import OutputError
+from lbm.io.interrupt import interrupts_deferred
 
 __all__ = ["write_aside"]
 
@@ -72,7 +73,8 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
     """An HDF5 file open for writing, which takes the name ``path`` only when complete and on the disk.
 
     Raises :class:`lbm.errors.OutputError` if that fails (disk full, no permission); a file that was at
-    ``path`` is then still there, unchanged.
+    ``path`` is then still there, unchanged. Ctrl-C takes effect when the file is complete: HDF5 cannot be
+    interrupted, it goes on with what was not written.
     """
     path = arguments.path("file", path)
     if not path.name or "\0" in str(path):
@@ -86,7 +88,7 @@ def write_aside(path: Path | str) -> Iterator[h5py.File]:
         _remove_stale(path)
         with _Sink(aside, "x+") as sink:
             _hold(sink.fileno())
-            with h5py.File(sink, "w") as file:
+            with interrupts_deferred(second_one_through=False), h5py.File(sink, "w") as file:
                 yield file
             if sink.failure is not None:
                 raise sink.failure

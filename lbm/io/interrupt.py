@@ -1,4 +1,4 @@
-"""Ctrl-C between two steps, never within one: what a kernel began must be completed."""
+"""Ctrl-C between two steps, never within one, nor within a file: what was begun must be completed."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def interrupts_deferred() -> Iterator[list]:
-    """Hold back Ctrl-C, listed in what is yielded, until the block is left; let a second one through."""
+def interrupts_deferred(second_one_through: bool = True) -> Iterator[list]:
+    """Hold back Ctrl-C, listed in what is yielded, until the block is left; let a second one through, or none."""
     usual = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(usual):
         yield []  # signals reach the main thread only
@@ -18,7 +18,7 @@ def interrupts_deferred() -> Iterator[list]:
     held: list = []
 
     def hold(*received) -> None:
-        if held:
+        if held and second_one_through:
             usual(*received)
         held.append(received)
 

@@ -24,7 +24,7 @@ from pathlib import Path
 from restitution.cases.case import Case
 from restitution.errors import StoppedError
 from restitution.files import write_folder
-from restitution.locks import sole_writer
+from restitution.locks import interrupts_put_off, sole_writer
 from restitution.runs.progress import RunProgress
 from restitution.runs.resolved import ResolvedRun, owner_of
 from restitution.runs.results import results
@@ -97,7 +97,8 @@ def simulate(
             progress.save()  # whatever becomes of the tables, the run need not be made again
             write_folder(folder, results(run, progress.frames, progress.seconds, every_step))
         except BaseException:
-            progress.leave()
+            with interrupts_put_off():  # who presses Ctrl-C twice still wants to go on
+                progress.leave()
             raise
         for name in (CHECKPOINT, SO_FAR):
             (folder / name).unlink(missing_ok=True)
