@@ -45,7 +45,11 @@ class CarriedMotion(Motion):
             self.inside = 1.0
         if not self.inside:
             acceleration = (fluid + weight) / mass
-            return gap + v + 0.5 * acceleration, v + acceleration, []
+            moved = gap + v + 0.5 * acceleration
+            if moved < 0 and gap < self.contact.edge:  # lifted for a moment, then pressed down: it lies as before
+                self.inside = 1.0
+                return 0.0, 0.0, []
+            return moved, v + acceleration, []
         return self._move_inside(time, gap, v)
 
     def _rests(self, gap: float, v: float) -> bool:

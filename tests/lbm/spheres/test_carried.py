@@ -59,3 +59,13 @@ def test_a_resting_sphere_has_no_impacts_until_the_fluid_lifts_it():
     gap, v, _ = _fly(motion, 0.0, 0.0, 10, fluid=-1.5 * WEIGHT)[-1]
     assert v == pytest.approx(10 * -0.5 * WEIGHT / MASS, rel=1e-12)
     assert gap > 0
+
+
+def test_a_sphere_lifted_for_a_moment_and_pressed_down_again_lies_as_before():
+    """A fluid that pulsates about the weight must not press it into the wall, from where there is no fall."""
+    motion, gap, v = _motion(e=0.0), *_fly(_motion(e=0.0), 0.5, -0.05, 50)[-1][:2]
+    for n, fluid in enumerate((-0.9, -0.9, -1.01, -0.2, -0.9, -1.001, 3.0, -0.9, -0.9)):
+        gap, v, new = motion.step(float(n), gap, v, fluid * WEIGHT, WEIGHT, MASS)
+        assert gap >= 0
+        assert not new or new[0].speed_out == 0
+    assert (gap, v) == (0.0, 0.0)
