@@ -11,6 +11,7 @@ any law of drag.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -29,13 +30,14 @@ _PIECES = 8
 
 @dataclass(frozen=True)
 class Fall:
-    """An acceleration towards the wall in m/s2, its error, and the mean and the greatest speed meanwhile in
-    m/s.
+    """An acceleration towards the wall in m/s2, its error, and the mean speed in m/s and the mean gap in m
+    meanwhile; of velocities the gap is not known: without end.
     """
 
     acceleration: float
     error: float
     mean_speed: float
+    gap: float = math.inf
 
     @property
     def sure(self) -> bool:
@@ -111,7 +113,7 @@ def _fall(t: NDArray, y: NDArray, track: Track, order: int) -> Fall:
     scatter = float(np.sqrt(np.sum((y - design @ c) ** 2) / max(len(t) - order - 1, 1)))
     error = max(track.sigma, scatter) * float(np.linalg.norm(inverse[order])) * _together(y - design @ c)
     if order == 2:
-        return Fall(-2 * c[2] / span**2, 2 * error / span**2, abs(c[1]) / span)
+        return Fall(-2 * c[2] / span**2, 2 * error / span**2, abs(c[1]) / span, float(np.mean(y)))
     return Fall(-c[1] / span, error / span, float(np.mean(np.abs(y))))
 
 

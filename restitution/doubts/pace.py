@@ -24,6 +24,10 @@ LEAST, MOST = 0.95, 1.04
 """The same where lengths and densities are known to 2 % each. Nothing makes the acceleration less (all shipped
 records have 0.95 or more within two errors), and a wake alone makes it more; so beyond three errors less is
 doubtful, and more where the approach, which meets no wake, has more as well."""
+FILM = 0.1
+"""Edge of a film in diameters within which a sphere may fall freely, with the added mass of a touching one."""
+_AT_CONTACT = 0.803
+"""Added mass of a touching sphere over the displaced mass: (3/2) zeta(3) - 1."""
 _DRAG = 0.1
 """Relative error of a law of drag."""
 SLOW_AT_FIRST, FAST_AT_FIRST = 0.4, 2.5
@@ -45,7 +49,7 @@ def of_pace(track: Track, found: Contacts, conditions: Conditions, whole: bool) 
     coming = falls.approach(track, found) if whole else None
     fast = falls.fastest(track, found)
     lighter = conditions.sphere.density < conditions.fluid.density
-    if (share := _share(track, found, turning, coming, g, terminal, fast)) is not None:
+    if (share := _share(track, found, turning, coming, conditions, terminal, fast)) is not None:
         nothing = not found.contacts and share < _NOTHING_FALLS
         return [_lighter(share * g, conditions) if lighter else _clock(share, g, conditions, nothing)]
     if fast > BEYOND * terminal:
@@ -82,11 +86,12 @@ def _share(
     found: Contacts,
     turning: list[falls.Fall],
     coming: falls.Fall | None,
-    g: float,
+    conditions: Conditions,
     terminal: float,
     fast: float,
 ) -> float | None:
     """By how much of free fall the sphere accelerates, where it cannot be so much or so little; else None."""
+    g = abs(conditions.free_fall)
     if not turning:
         if coming is None or not coming.mean_speed < 0.5 * terminal:
             return None
@@ -99,7 +104,8 @@ def _share(
     share, error = surest.acceleration / g, surest.error / g
     if share <= 0:
         return None
-    if share < SLOW or share + 3 * error < LEAST:
+    low = at_wall(conditions, surest.gap)
+    if share < SLOW * low or share + 3 * error < LEAST * low:
         return share
     least = min(turning, key=lambda fall: fall.acceleration + 3 * fall.error)
     if (least.acceleration + 3 * least.error) / g > FAST:
@@ -112,6 +118,19 @@ def _share(
         return None
     alike = (first.acceleration - 3 * first.error) / (g * (1 - drag)) - _DRAG * drag
     return mean if alike > MOST else None
+
+
+def at_wall(conditions: Conditions, gap: float) -> float:
+    """The least part of free fall that the added mass leaves a sphere ``gap`` (m) from the wall.
+
+    There it is up to 0.803 of the displaced mass in place of 0.5, in a film whose loss an e_eff stands for all the
+    way to its edge; with (r/(r + h))^2.5 between the two, that is potential flow within 0.01. Steel loses 3 %,
+    nylon in water 15 %.
+    """
+    sphere, rho_f = conditions.sphere, conditions.fluid.density
+    beyond = max(gap - FILM * sphere.diameter, 0.0)
+    near = (0.5 * sphere.diameter / (0.5 * sphere.diameter + beyond)) ** 2.5
+    return (sphere.density + 0.5 * rho_f) / (sphere.density + (0.5 + (_AT_CONTACT - 0.5) * near) * rho_f)
 
 
 def _mean(turning: list[falls.Fall], g: float) -> tuple[float, float]:
