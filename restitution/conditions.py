@@ -142,6 +142,8 @@ def defects_of(error: ValidationError, file: str | None) -> list[Defect]:
         value = None if missing or isinstance(e["input"], dict | list) else _text(e["input"])
         known, limits = _RULES.get(e["type"]), _plain(e.get("ctx", {}))
         rule = e["msg"].removeprefix("Value error, ") if known is None else known.format(**limits)
+        if e["type"] == "float_type" and any(str(key).endswith("_d") for key in e["loc"]):
+            rule += " of diameters, without a unit"
         if isinstance(e["input"], float) and not math.isfinite(e["input"]):
             rule = _RULES["finite_number"]
         own = e["loc"][-1:] if e["type"] in ("missing", "extra_forbidden") else ()

@@ -37,7 +37,7 @@ def add_data(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--edge",
-        type=options.number,
+        type=options.diameters,
         metavar="H",
         help="gap in diameters at which the film ends, for the speed far: of a track, which one to take; of a "
         "table, which one its e_eff mean (default: as its column film_edge_d states, else 0.1)",

@@ -125,6 +125,22 @@ def number(text: str) -> float:
     return float(text)
 
 
+def diameters(text: str) -> float:
+    """A number of diameters as an argument type: 0.1, 0.1d, 0.1 d; a length is refused with what to give."""
+    from restitution.units import UnitError, in_si
+
+    try:
+        return number(text.strip().removesuffix("d"))
+    except argparse.ArgumentTypeError as none:
+        try:
+            in_si(text, "m")
+        except UnitError:
+            raise argparse.ArgumentTypeError(f"{text!r} is no number of diameters, as 0.1 or 0.1d") from none
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is a length, and a number of diameters is meant, as 0.1 or 0.1d: divide by the sphere's"
+        ) from None
+
+
 def whole(text: str) -> int:
     """A whole number, 0 or above, as an argument type."""
     if not (text.isascii() and text.isdecimal() and len(text) <= _MOST_DIGITS):

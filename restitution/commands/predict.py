@@ -47,7 +47,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--edge",
-        type=options.number,
+        type=options.diameters,
         metavar="H",
         help="gap in diameters at which the film ends whose loss e_eff is to have, if another than the fit's: "
         "converted by the point particle, for --fluid and --sphere",

@@ -32,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--frames", type=options.whole, default=2, metavar="N", help="frames of the window on each side (2)"
     )
     parser.add_argument(
-        "--film", type=options.number, default=0.1, metavar="H", help="film thickness in diameters (0.1)"
+        "--film", type=options.diameters, default=0.1, metavar="H", help="film thickness in diameters (0.1)"
     )
     parser.add_argument(
         "--stokes", default="st", metavar="CONVENTION", help="st (default), st_star, st_d, st_18, st_b"

@@ -153,9 +153,16 @@ def check_edge(setup: Setup, file: str) -> None:
     rule = (
         f"lets the rebound leave the film of {edge:g} d within {lasts:.2f} d/c_s, c_s being the speed of sound, "
         f"before the fluid has answered to it: at least {SETTLED:g} are needed. Take "
-        f"{speed * lasts / SETTLED:.2g}, or contact.edge_d = {wider:g}"
+        f"{_two_digits_down(speed * lasts / SETTLED):g}, or contact.edge_d = {wider:g}, at which measured values "
+        "are others and a law needs its own law_edge_d"
     )
     raise InputError(Defect(rule, file=file, field="numerics.lattice_speed", value=f"{speed:g}"))
+
+
+def _two_digits_down(value: float) -> float:
+    """Rounded down, so that what is advised is not refused."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return math.floor(value / digit) * digit
 
 
 def fall_time(case: Case) -> float:

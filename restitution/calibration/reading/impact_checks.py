@@ -71,7 +71,7 @@ class TableCheck:
             return given
         first, at = stated.iloc[0], stated.index[0]
         if given is not None and given != first:
-            rule = f"the file states another: {first!r}"
+            rule = f"the file states another: {_shown(first)}"
             self.defects.append(
                 Defect(rule, file=self.file, row=int(self.rows[at]), field=option, value=str(given))
             )

@@ -52,6 +52,36 @@ def test_the_edge_of_a_table_is_kept_with_the_fit(case, column, option, edge):
     assert fit_closure("fit.json").edge == edge
 
 
+@pytest.mark.parametrize("written", ["0.2d", "0.2 d", " .2", "2e-1"])
+def test_an_edge_is_written_with_its_unit_or_without(case, written):
+    assert fitted(case, table(case, "my.csv"), "--edge", written).edge_d == 0.2
+
+
+@pytest.mark.parametrize("written", ["0.3mm", "0.3 mm", "3e-4 m", "0.1,0.2", "5%"])
+def test_a_length_is_no_number_of_diameters(case, capsys, written):
+    name = table(case, "my.csv")
+    for command in (
+        ("fit", name, "--law", "eq4_exponential", "--edge", written),
+        ("impacts", "gondret2002_st152", "--film", written),
+    ):
+        with pytest.raises(SystemExit) as left:
+            case(*command)
+        err = capsys.readouterr().err
+        assert left.value.code == 2
+        assert "diameters" in err
+        assert ("length" in err) == ("m" in written)
+        assert len(err.strip().splitlines()) == 1
+
+
+def test_a_length_as_the_edge_of_a_case_is_told_apart_from_diameters(case):
+    text = 'base = "gondret_st152_10_measured"\n[contact]\nmode = "effective"\nedge_d = "0.3 mm"\n'
+    (case.folder / "mine.toml").write_text(text)
+    status, _, err = case("bounce", "mine.toml")
+    assert status == 2
+    assert "contact.edge_d" in err
+    assert "diameters" in err
+
+
 def test_speeds_that_know_no_edge_have_none(case):
     assert fitted(case, table(case, "my.csv", speed="contact")).edge_d is None
     status, _, err = case("predict", "fit.json", *PAIR, "--speed", "0.5", "--edge", "0.2")
@@ -62,7 +92,7 @@ def test_speeds_that_know_no_edge_have_none(case):
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
-        (("--edge", "0.2"), "another"),
+        (("--edge", "0.2"), "another: 0.3"),
         (("--edge", "3"), "--edge"),
         (("other.csv",), "film_edge_d"),
     ],

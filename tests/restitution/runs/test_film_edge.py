@@ -1,6 +1,7 @@
 """One black box for both models: its edge, e_eff converted to it, e_eff of a record, what is refused."""
 
 import math
+import re
 
 import pytest
 
@@ -84,6 +85,17 @@ def test_a_film_that_is_left_before_the_fluid_has_answered_is_refused(speed, edg
         check_edge(set_up(case_of(speed=speed, edge_d=edge)), "mine")
     assert error.value.defects[0].field == "numerics.lattice_speed"
     assert "contact.edge_d" in str(error.value)
+
+
+@pytest.mark.parametrize("speed", [0.0331, 0.0377, 0.05, 0.07])
+def test_what_is_advised_in_its_place_is_taken(speed):
+    law = {**EQ4, "law_edge_d": 0.1}
+    with pytest.raises(InputError) as error:
+        check_edge(set_up(case_of(speed=speed, **law, edge_d=0.1)), "mine")
+    slower, wider = re.search(r"Take ([\d.]+), or contact.edge_d = ([\d.]+)", str(error.value)).groups()
+    assert 0.02 < float(slower) < speed
+    check_edge(set_up(case_of(speed=float(slower), **law, edge_d=0.1)), "mine")
+    check_edge(set_up(case_of(speed=speed, **law, edge_d=float(wider))), "mine")
 
 
 @pytest.mark.parametrize(("speed", "edge"), [(0.025, 0.1), (0.05, 0.2), (0.0125, 0.05)])
