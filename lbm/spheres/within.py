@@ -36,18 +36,18 @@ def refuse_outside(grid: Grid, centres: np.ndarray, radii: np.ndarray) -> None:
 
 def refuse_lost(grid: Grid, centres: np.ndarray, radii: np.ndarray, step: int) -> None:
     """Refuse to go on with spheres that have left the box or met; raises :class:`InputError`."""
-    for face, kind in enumerate(grid.faces):
-        axis = face // 2
-        if kind == PERIODIC:
-            continue
-        out = -centres[:, axis] if face % 2 == 0 else centres[:, axis] - grid.shape[axis]
-        # whose centre lies on a mirror stays there exactly
-        lost = (out != 0) & (out > -radii) if kind == SLIP else out > 0
-        for s in np.flatnonzero(lost):
+    bounded = [(face, kind == SLIP) for face, kind in enumerate(grid.faces) if kind != PERIODIC]
+    shape = grid.shape
+    for s, centre in enumerate(centres.tolist()):  # numbers, not arrays: this is asked in every step
+        for face, mirror in bounded:
+            out = centre[face // 2] - shape[face // 2] if face % 2 else -centre[face // 2]
+            # whose centre lies on a mirror stays there exactly
+            if not out > (-radii[s] if mirror else 0) or (mirror and out == 0):
+                continue
             where = f"sphere {s} at step {step}"
-            if kind == SLIP:
+            if mirror:
                 raise InputError(
-                    f"{where}: {out[s] + radii[s]:.3g} cells beyond the free-slip face {FACES[face]}, where it "
+                    f"{where}: {out + radii[s]:.3g} cells beyond the free-slip face {FACES[face]}, where it "
                     "would meet its mirror image: stop the run before, or take a larger box or another face"
                 )
             raise InputError(
@@ -63,8 +63,8 @@ def refuse_lost(grid: Grid, centres: np.ndarray, radii: np.ndarray, step: int) -
 
 def _overlapping(grid: Grid, centres: np.ndarray, radii: np.ndarray) -> tuple[int, int] | None:
     """The first two spheres, or images across periodic faces, that overlap."""
-    periodic = np.array(grid.faces[::2]) == PERIODIC
     for s in range(1, len(radii)):
+        periodic = np.array(grid.faces[::2]) == PERIODIC
         apart = centres[:s] - centres[s]
         apart -= np.where(periodic, grid.shape * np.round(apart / grid.shape), 0.0)
         found = np.flatnonzero(np.linalg.norm(apart, axis=1) < radii[:s] + radii[s])
