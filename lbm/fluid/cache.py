@@ -21,11 +21,6 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataC
 
 from lbm.fluid import private
 
-if not {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"} & set(os.environ):
-    # Read when the first parallel kernel loads OpenMP. By default a thread that waits for another spins for
-    # milliseconds, and where other programs run it takes the very core from the one it waits for.
-    os.environ["GOMP_SPINCOUNT"] = "10000"
-
 _PACKAGE = Path(__file__).parent.parent
 _kernels: list = []
 _trouble: set[str] = set()
