@@ -13,6 +13,8 @@ FEWEST_CELLS = 6.0
 """Cells a diameter below which the surface of a sphere is no sphere any more."""
 _SMALL = 1e-4
 """Speed over the terminal one of Stokes, below which a series is more exact than a logarithm."""
+MOST_MACH = 0.5
+"""Speed over that of sound, 1/sqrt(3) cells a step, at which a drive cannot be run; from 0.2 on one is doubted."""
 HEADROOM_D = 1.0
 """Least distance between sphere and top of the box, in diameters."""
 
@@ -178,6 +180,16 @@ def _resolution(case: Case) -> Iterator[Finding]:
             None,
             "is missing: a release from rest does not give the speed to scale by",
         )
+    elif case.release.speed is not None:
+        fastest = math.hypot(case.release.speed, case.release.along)
+        mach = math.sqrt(3) * n.lattice_speed * fastest / case.reference_speed
+        if mach > MOST_MACH and fastest > case.reference_speed:
+            yield (
+                "release.along" if case.release.along else "release.speed",
+                f"{fastest:g} m/s",
+                f"would be {mach:.3g} of the speed of sound: numerics.lattice_speed = {n.lattice_speed:g} stands for "
+                f"{case.reference_speed:g} m/s; set numerics.reference_speed to the fastest speed of the sphere",
+            )
     if case.film.cut_off > n.cells_per_diameter / 2:
         yield (
             "film.cut_off_cells",

@@ -155,6 +155,12 @@ BAD = {
     "no dry restitution": ("e_dry = 0.97", "", "sphere.e_dry"),
     "no roughness": ("roughness = 1.5e-7", "", "film.floor"),
     "drive without ramp": ("ramp = 0.004", "", "release.ramp"),
+    "drive faster than sound": (
+        "cells_per_diameter = 10",
+        "cells_per_diameter = 10\nreference_speed = 0.001",
+        "release.speed",
+    ),
+    "oblique faster than sound": ("ramp = 0.004", "ramp = 0.004\nalong = 40", "release.along"),
     "unknown record": ("[fluid]", 'record = "gondret"\n[fluid]', "record"),
 }
 
