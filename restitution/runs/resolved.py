@@ -23,6 +23,7 @@ from lbm.fluid import cache
 from lbm.fluid.fields import with_image
 from lbm.io import checkpoint as lbm_checkpoint
 from lbm.observers import DivergenceGuard, FieldOutput
+from lbm.spheres import SphereImpact
 from restitution.cases.case import Case
 from restitution.errors import Defect, DivergedError, InputError, StoppedError
 from restitution.runs.record import SolverContact
@@ -100,8 +101,23 @@ class ResolvedRun:
         return (cells + steps * speed) / self.flow.length
 
     @property
+    def _impacts(self) -> list[SphereImpact]:
+        """Those at the floor; a slanting way may meet the sides too."""
+        return [i for i in self.spheres.impacts if i.face == "z-"]
+
+    @property
+    def notes(self) -> list[str]:
+        """What the motion has beside that above one wall."""
+        first = {i.face: i for i in reversed(self.spheres.impacts) if i.face != "z-"}
+        return [
+            f"the sphere met the wall {face} {i.step * self.step_s:.4g} s after its release: from there on this is "
+            "not the motion above one wall; a wider box, or a shorter run, has none of it"
+            for face, i in first.items()
+        ]
+
+    @property
     def contacts(self) -> list[SolverContact]:
-        """The contacts so far."""
+        """The contacts with the floor so far."""
         speed = self.flow.scales.unit("velocity")
         return [
             SolverContact(
@@ -109,7 +125,7 @@ class ResolvedRun:
                 speed_in_m_s=float(i.speed_in * speed),
                 speed_out_m_s=float(i.speed_out * speed),
             )
-            for i in self.spheres.impacts
+            for i in self._impacts
         ]
 
     @property
@@ -176,7 +192,7 @@ class ResolvedRun:
         if not math.isfinite(self.gap_d):
             self.check()  # names the cell, if the flow is to blame
             raise DivergedError(f"diverged by step {self.simulation.steps}: the sphere is nowhere")
-        if not self.spheres.impacts:
+        if not self._impacts:
             least = 1.0 if self.gap_d > _NEAR_D else 0.1  # a sphere that has just been released gains speed
             speed = max(-float(self.spheres.velocities[0, 2]), least * self.flow.speed)
             steps = int(min(max(0.5 * self.gap_d * self.flow.length / speed, 1), steps))
@@ -232,7 +248,7 @@ class ResolvedRun:
         import pandas as pd
 
         track, si = self.spheres.track(0), self.flow.scales.si
-        first = self.spheres.impacts[0].step if self.spheres.impacts else 0.0
+        first = self._impacts[0].step if self._impacts else 0.0
         kinds = {
             "gap": ("gap_m", "length"), "v": ("v{}_m_s", "velocity"), "w": ("spin_{}_1_s", "frequency"),
             "f": ("force_{}_N", "force"), "t": ("torque_{}_N_m", "torque"),

@@ -45,7 +45,7 @@ def results(run: ResolvedRun, frames: FlowFrames, seconds: float, every_step: bo
         step_s=run.step_s,
         numbers={name: float(f"{value:.5g}") for name, value in run.flow.describe().items()},
         contacts=tuple(_contact(c, first) for c in run.contacts),
-        notes=tuple(notes),
+        notes=(*run.notes, *notes),
         physics=physics.agreed_version(),
         code_hash=program_hash(),
         told=told(case),

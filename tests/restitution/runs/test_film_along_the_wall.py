@@ -10,6 +10,7 @@ from restitution import cases
 from restitution.cases import FilmModel
 from restitution.cli import main
 from restitution.runs.closures import tangential_force
+from restitution.runs.record import read_record
 from restitution.runs.simulate import simulate
 
 # Goldman, Cox & Brenner 1967, exact, at gap/r = 0.0032 and 0.0453: force by translation, torque by translation,
@@ -92,6 +93,19 @@ def test_the_film_turns_a_sliding_sphere_as_if_it_rolled(oblique):
     without, within = (motion.spin_y_1_s[motion.time_s.abs() < 0.0005] for motion in oblique)
     assert np.ptp(within) > np.ptp(without)
     assert within.iloc[-1] > without.iloc[-1]
+
+
+def test_a_side_wall_that_is_met_is_no_contact_of_the_fall(tmp_path):
+    """The clock begins at the floor, where the gap is that of the film's roughness, and the side is told."""
+    text = OBLIQUE.format(along=0.4, film="false").replace("[film]", 'sides = "no-slip"\n[film]')
+    (tmp_path / "case.toml").write_text(text)
+    simulate(cases.read_case(tmp_path / "case.toml"), tmp_path / "out")
+    run, motion = read_record(tmp_path / "out"), pd.read_csv(tmp_path / "out" / "motion.csv")
+    first = motion[motion.time_s >= 0].iloc[0]
+    assert first.gap_m < 0.02 * 0.003
+    assert motion.vx_m_s[motion.time_s < 0].min() < 0, "it came back from the side before"
+    assert run.contacts[0].time_s == 0
+    assert any("x+" in note for note in run.notes)
 
 
 @pytest.mark.parametrize(
