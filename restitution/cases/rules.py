@@ -99,7 +99,11 @@ def _film(case: Case) -> Iterator[Finding]:
         if case.floor >= case.film.cut_off * cell:
             cut_off = case.film.cut_off
             rule = f"must lie below the cut-off of {cut_off:g} cells = {cut_off * cell:.3g} m"
-            yield "film.floor", f"{case.floor:g}", rule
+            field = "film.floor"
+            if case.film.floor is None:
+                field = f"{'sphere' if case.sphere.roughness == case.floor else 'wall'}.roughness"
+                rule += "; the film ends at the roughness where no film.floor is given"
+            yield field, f"{case.floor:g}", rule
 
 
 def _along(case: Case) -> Iterator[Finding]:

@@ -153,6 +153,7 @@ BAD = {
     "key of another mode": ('mode = "dry"', 'mode = "dry"\nduration_steps = 20', "contact.duration_steps"),
     "no end": ("after_contact = 0.1", "", "run.after_contact"),
     "no dry restitution": ("e_dry = 0.97", "", "sphere.e_dry"),
+    "roughness above the film": ("roughness = 1.5e-7", "roughness = 0.01", "sphere.roughness"),
     "no roughness": ("roughness = 1.5e-7", "", "film.floor"),
     "drive without ramp": ("ramp = 0.004", "", "release.ramp"),
     "drive faster than sound": (
