@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from restitution.commands.console import doubt_aside, show
+from restitution.commands.console import doubt_aside, show, show_doubts
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -34,6 +34,7 @@ def run(args: argparse.Namespace) -> int | None:
     from restitution.bounce import IntegrationError
     from restitution.cases.reading import read_case
     from restitution.commands.results import folder_for, show_contacts
+    from restitution.doubts import of_light_rebound
     from restitution.files import write_folder
     from restitution.locks import sole_writer
     from restitution.runs.point_particle import predict, write
@@ -55,4 +56,6 @@ def run(args: argparse.Namespace) -> int | None:
         write(prediction, folder, seconds)
     show_contacts(prediction.contacts, list(prediction.path.apexes() * 1e3))
     show(f"results in {folder}")
+    if prediction.path.closures.black_box:
+        show_doubts(of_light_rebound(case.conditions, prediction.path.closures.film))
     return None

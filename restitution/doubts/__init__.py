@@ -20,7 +20,7 @@ from restitution.doubts.motion import of_track
 from restitution.doubts.pace import of_speed
 from restitution.doubts.place import holes
 from restitution.doubts.record import of_record
-from restitution.doubts.stated import of_conditions
+from restitution.doubts.stated import of_conditions, of_light_rebound
 
 __all__ = [
     "Cleaned",
@@ -32,6 +32,7 @@ __all__ = [
     "of_copies",
     "of_gain",
     "of_impacts",
+    "of_light_rebound",
     "of_meetings",
     "of_record",
     "of_speed",

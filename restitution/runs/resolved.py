@@ -110,8 +110,8 @@ class ResolvedRun:
         """What the motion has beside that above one wall."""
         first = {i.face: i for i in reversed(self.spheres.impacts) if i.face != "z-"}
         return [
-            f"the sphere met the wall {face} {i.step * self.step_s:.4g} s after its release: from there on this is "
-            "not the motion above one wall; a wider box, or a shorter run, has none of it"
+            f"the sphere met the wall {face} {i.step * self.step_s:.4g} s after its release: from there on this "
+            "is not the motion above one wall; a wider box, or a shorter run, has none of it"
             for face, i in first.items()
         ]
 

@@ -5,6 +5,7 @@ import pytest
 from restitution import datasets
 from restitution.calibration.result.design import candidates
 from restitution.cases.reading import names, read_case
+from restitution.cli import main
 from restitution.conditions import Conditions
 from restitution.doubts.pace import of_speed
 from restitution.doubts.stated import of_conditions, of_fluid, of_size
@@ -88,3 +89,21 @@ def test_a_speed_that_nothing_falls_with_is_doubted():
     assert '"600 mm/s"' in doubt.message
     (doubt,) = of_speed(150.0, typed, by_stokes=True)
     assert '"10 mPa s"' in doubt.message
+
+
+@pytest.mark.parametrize(
+    ("density", "edge_d", "doubted"),
+    [(1140, 0.1, True), (2500, 0.1, True), (1140, 0.2, False), (7800, 0.1, False), (800, 0.1, False)],
+)
+def test_a_light_sphere_that_leaves_a_thin_film_is_doubted(tmp_path, capsys, density, edge_d, doubted):
+    (tmp_path / "case.toml").write_text(
+        f'[fluid]\ndensity = 1000\nviscosity = "2.5 mPa s"\n[sphere]\ndiameter = "6 mm"\ndensity = {density}\n'
+        'e_dry = 0.95\n[release]\nkind = "rest"\ngap_d = 3\n[film]\nform = "none"\n'
+        f'[contact]\nmode = "effective"\nmeasured = [0.6]\nedge_d = {edge_d}\n[run]\nafter_contact = 0.05\n'
+    )
+    status = main(["bounce", str(tmp_path / "case.toml"), "--out", str(tmp_path / "out")])
+    if density < 1000:
+        assert status == 2, "it rises"
+    else:
+        assert not status
+        assert ("doubt: a sphere" in capsys.readouterr().out) == doubted
