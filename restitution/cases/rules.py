@@ -192,7 +192,8 @@ def _resolution(case: Case) -> Iterator[Finding]:
                 "release.along" if case.release.along else "release.speed",
                 f"{fastest:g} m/s",
                 f"would be {mach:.3g} of the speed of sound: numerics.lattice_speed = {n.lattice_speed:g} "
-                f"stands for {case.reference_speed:g} m/s; set numerics.reference_speed to the fastest speed of the sphere",
+                f"stands for {case.reference_speed:g} m/s; set numerics.reference_speed to the "
+                "fastest speed of the sphere",
             )
     if case.film.cut_off > n.cells_per_diameter / 2:
         yield (

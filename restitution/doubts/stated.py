@@ -128,8 +128,8 @@ def of_light_rebound(conditions: Conditions, edge_d: float) -> list[Doubt]:
     return [
         Doubt(
             "light",
-            f"a sphere {ratio:.3g} times as heavy as its fluid leaves a film of {edge_d:g} d: resolved runs rise 5 "
-            "to 10 % higher there at a density ratio of 1.14, 3 to 4 % at 2.5, none at 8.2; from 0.2 d on they agree "
-            "within 2 %. Does the history force, which knows no wall here, brake it too much?",
+            f"a sphere {ratio:.3g} times as heavy as its fluid leaves a film of {edge_d:g} d: resolved runs rise "
+            "5 to 10 % higher there at a density ratio of 1.14, 3 to 4 % at 2.5, none at 8.2; from 0.2 d on they "
+            "agree within 2 %. Does the history force, which knows no wall here, brake it too much?",
         )
     ]
