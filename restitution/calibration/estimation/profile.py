@@ -64,8 +64,11 @@ def settled(best: Maximum, negative_log: Function, curvature: Curvature | None) 
     for _ in range(_ROUNDS):
         if curvature is None or best.unsettled < SHORT:
             break
-        values = _Profile(best, negative_log, curvature).follow(best.values, None)
-        further = sharpened(replace(best, values=values), negative_log, curvature)
+        profile = _Profile(best, negative_log, curvature)
+        values = profile.follow(best.values, None)
+        # Where the curvature is not one of a maximum yet, exact steps leave this as it is: it is further all the same.
+        followed = replace(best, values=values, negative_log=profile.total(values))
+        further = sharpened(followed, negative_log, curvature)
         gain, best = best.negative_log - further.negative_log, further
         if not gain > 0:
             break
