@@ -66,7 +66,7 @@ def settled(best: Maximum, negative_log: Function, curvature: Curvature | None) 
             break
         profile = _Profile(best, negative_log, curvature)
         values = profile.follow(best.values, None)
-        # Where the curvature is not one of a maximum yet, exact steps leave this as it is: it is further all the same.
+        # Exact steps leave this as it is where the curvature is not one of a maximum yet: that is further too.
         followed = replace(best, values=values, negative_log=profile.total(values))
         further = sharpened(followed, negative_log, curvature)
         gain, best = best.negative_log - further.negative_log, further
